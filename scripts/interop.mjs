@@ -2,6 +2,7 @@
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { command } from "./bench/command.mjs";
+import { data, root, rowsOf, runPackage } from "./interop/cells.mjs";
 import { writeFixtures, writePlaces, writeTable } from "./interop/table.mjs";
 import { cached, digest } from "./lib/cache.mjs";
 import { buildPackage } from "./lib/package.mjs";
@@ -11,15 +12,13 @@ import { attempt, run } from "./lib/run.mjs";
 import { step } from "./lib/step.mjs";
 
 /** @typedef {import("./interop/table.mjs").Cell} Cell */
-/** @typedef {{ program: string, version: string, kind: string, variant: string, notWritten?: string }} Written */
 
-const root = at("target", "interop");
 const env = { PYTHONPATH: at("scripts"), PYTHONDONTWRITEBYTECODE: "1" };
 /**
  * Of each environment of Python, the packages of its programs, the first in the version that is run, and what they need `also`.
  * @type {{ python: Record<string, Record<string, string>>, npm: Record<string, string> }}
  */
-const packages = JSON.parse(readFileSync(at("scripts", "interop", "packages.json"), "utf8"));
+const packages = data("packages");
 
 /** Installs npm packages that the repository does not have. */
 async function npm() {
@@ -35,13 +34,22 @@ async function npm() {
   });
 }
 
-/** The rows of a Python program. @param {string} python @param {string} name @param {string} version */
-async function rowsOf(python, name, version) {
-  const out = join(root, "rows", `${name}-${version}.json`);
-  rmSync(out, { force: true });
-  const { reason, output } = await attempt(python, ["-m", "interop", "run", root, name, version, out], { env });
-  if (reason !== "") throw new Error(`${name}: ${reason}\n${output.slice(-2000)}`);
-  return JSON.parse(readFileSync(out, "utf8"));
+/**
+ * Runs a Python program.
+ * @param {string} python
+ * @param {string} name
+ * @param {string} version
+ * @param {readonly import("./interop/cells.mjs").Written[]} files
+ */
+async function runPython(python, name, version, files) {
+  const job = join(root, "rows", `${name}-${version}.json`);
+  const writes = Object.fromEntries(files.map(({ file, call }) => [file, call]));
+  writeFileSync(job, JSON.stringify({ version, writes }));
+  const { reason, output } = await attempt(python, ["-m", "interop", "cells.run", root, name, job], { env });
+  if (reason === "") return JSON.parse(readFileSync(job, "utf8"));
+  // What crashes misses all of its cells.
+  const why = `${reason} ${output.slice(-300)}`;
+  return { failed: Object.fromEntries(files.map(({ file }) => [file, why])), found: {}, why };
 }
 
 /** @param {{ only?: string[], write: boolean, verbose: boolean, python: string }} options */
@@ -49,33 +57,30 @@ async function interop({ only, write, verbose, python: program }) {
   await buildPackage();
   const { readBack } = await import("./interop/read.mjs");
   const { writeOurs } = await import("./interop/ours.mjs");
-  const { programs, rowsOf: rowsOfPackage } = await import("./interop/programs.mjs");
+  const { packageOf, programs } = await import("./interop/programs.mjs");
   const ofPython = Object.values(packages.python).flatMap(({ also, ...versions }) => Object.keys(versions));
   const unknown = only?.find((name) => ![...ofPython, ...Object.keys(programs)].includes(name));
   if (unknown !== undefined) throw new Error(`--only: no program is called ${unknown}.`);
   rmSync(join(root, "files"), { recursive: true, force: true });
   mkdirSync(join(root, "rows"), { recursive: true });
+
   const pythonIn = (/** @type {string} */ name) => {
     const list = [...new Set(Object.values(packages.python[name] ?? {}).flatMap((each) => each.split(" ")))];
     return step(`Python packages: ${name}`, () => pythonOf(join(root, name), digest([], list), list, program));
   };
   const main = await pythonIn("main");
-  await run(main, ["-m", "interop", "truth", root], { env });
+  await run(main, ["-m", "interop", "truth.write", root], { env });
   await writeOurs(join(root, "ours"), join(root, "truth"));
-  /** @type {Cell[]} */
-  const cells = [];
+
   /** @type {any[]} */
-  const read = [];
-  /** @type {Written[]} */
-  const unwritten = [];
-  const add = async (/** @type {any[]} */ rows) => {
-    for (const row of rows) {
-      if (row.notWritten !== undefined) unwritten.push(row);
-      else if (row.passed !== undefined) cells.push(row);
-      else read.push(row.read === undefined ? await readBack(row) : row);
-    }
-    return `${rows.length} cells`;
-  };
+  const rows = [];
+  /** @typedef {Parameters<typeof rowsOf>[2]} Run */
+  const add = (/** @type {string} */ name, /** @type {string} */ version, /** @type {Run} */ does) =>
+    step(`${name} ${version}`, async (say) => {
+      const own = await rowsOf(name, version, does, readBack);
+      rows.push(...own);
+      say(`${own.length} cells`);
+    });
   const isWanted = (/** @type {string} */ name) => only === undefined || only.includes(name);
   for (const [environment, { also, ...versions }] of Object.entries(packages.python)) {
     const wanted = Object.entries(versions).filter(([name]) => isWanted(name));
@@ -83,21 +88,20 @@ async function interop({ only, write, verbose, python: program }) {
     const python = await pythonIn(environment);
     for (const [name, requirements] of wanted) {
       const version = /==(\S+)/.exec(requirements)?.[1] ?? "";
-      await step(`${name} ${version}`, async (say) => say(await add(await rowsOf(python, name, version))));
+      await add(name, version, (files) => runPython(python, name, version, files));
     }
   }
   await step("npm packages", npm);
-  for (const name of Object.keys(programs).filter(isWanted)) {
-    await step(name, async (say) => say(await add(await rowsOfPackage(name))));
+  for (const [name, { package: from, run: does }] of Object.entries(programs)) {
+    if (isWanted(name))
+      await add(name, packageOf(from).version, (files) => runPackage((cells) => does(cells, from), files));
   }
-  const file = join(root, "rows", "read.json");
-  writeFileSync(file, JSON.stringify(read));
-  await run(main, ["-m", "interop", "check", root], { env });
-  cells.push(...JSON.parse(readFileSync(file, "utf8")));
-  writeFileSync(join(root, "cells.json"), JSON.stringify(cells, null, 1));
-  for (const { program, version, variant, notWritten } of unwritten) {
-    console.log(`not written: ${program} ${version}, ${variant}: ${notWritten?.split("\n")[0]}`);
-  }
+
+  const file = join(root, "rows", "all.json");
+  writeFileSync(file, JSON.stringify(rows));
+  await run(main, ["-m", "interop", "checks.check", root, file], { env });
+  /** @type {Cell[]} */
+  const cells = JSON.parse(readFileSync(file, "utf8"));
   const misses = cells.filter(({ passed }) => !passed);
   for (const { program, version, kind, variant, result, passed } of verbose ? cells : misses) {
     console.log(`${passed ? "as stated" : "MISS"}: ${program} ${version}, ${kind}, ${variant}: ${result}`);
@@ -106,7 +110,7 @@ async function interop({ only, write, verbose, python: program }) {
   if (write) writePlaces(cells);
   // Some programs are not the whole table.
   if (write && only === undefined) {
-    writeFixtures(read.filter(({ file }) => file !== undefined));
+    writeFixtures(rows);
     writeTable(cells, new Date().toISOString().slice(0, 10));
   }
   if (misses.length > 0) process.exitCode = 1;

@@ -1,20 +1,10 @@
-"""`python -m interop truth ROOT` writes the known object, `check ROOT` compares what our readers returned.
+"""`python -m interop truth.write ROOT` writes the known object, `checks.check ROOT ROWS` compares what was read and loaded.
 
-`run ROOT NAME VERSION OUT` runs a program.
+`cells.run ROOT NAME JOB` lets a program do its job: files to write, and ours to load. Each environment has what its part needs.
 """
 
+import importlib
 import sys
 
-from . import cells, checks, truth
-from . import cameras, depths, loads, masks, meshes  # noqa: F401
-
-action, root, *rest = sys.argv[1:]
-if action == "truth":
-    truth.write(root)
-elif action == "check":
-    checks.check(root)
-else:
-    name, version, out = rest
-    found = cells.Cells(name, version, root)
-    found.run(cells.Truth(root))
-    cells.dump(out, found.rows)
+room, function = sys.argv[1].split(".")
+getattr(importlib.import_module(f".{room}", __package__), function)(*sys.argv[2:])

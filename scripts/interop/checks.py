@@ -1,18 +1,29 @@
-"""Whether our readers gave back the known object, to stated limits, or the error that is stated.
+"""Whether our readers gave back the known object, and programs found it in our files, to stated limits.
 
-Beside the truth, a cell may expect: `refused` (the code of the error) and what it `says`; what a warning `warns` of; the `axes` and the
-`unit` of a mesh (units in a metre), its `colors` (whose: vertex, face, texture), `colorLimit` (levels) and `colorFactor` (of light); `limitM`
-(metres); of depth, `only` the mask and a `share` of pixels; `limitPixels` of a mask, or what it is `against`; numbers of a `camera`.
+A cell expects a `wanted` number, or what a name stands for, to a `limit`: points in metres, others in a `unit`. It may be `relative`,
+points `among` others, or a `share` of the pixels, `only` in the mask. A mesh may have `axes`, a unit (units in a `metre`), `colors` (whose:
+vertex, face, texture), `colorLimit` (levels) and `colorFactor` (of light); a mask may be `against` another. A reader `warns`, or has
+`refused` the file with this code, and `says` why.
 """
 
+import json
 import os
 import re
 
 import numpy as np
+from scipy.spatial.distance import directed_hausdorff
 
-from .cells import FLIP, LIMIT, Truth, apply, dump, farthest, outcome, read
-from .truth import colours, light
+from .cells import FLIP, dump
+from .truth import Truth, apply, colours, light, rigid, volume
 
+# What is expected of files, where they do not say.
+FILES = {
+    "mesh": {"wanted": "body", "limit": 2e-7},
+    "depth": {"wanted": "depth", "limit": 1e-7, "unit": "m"},
+    "mask": {"wanted": "mask", "limit": 0, "unit": "pixels"},
+    "camera": {"wanted": "lens", "limit": 1e-3, "unit": "pixels"},
+    "pose": {"wanted": "placed"},
+}
 # To the body's axes from those of the file.
 AXES = {"same": np.eye(3), "-x": np.diag([-1.0, 1, 1])}
 AXES["y-up"] = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
@@ -20,21 +31,48 @@ AXES["y and z swapped"] = np.array([[1.0, 0, 0], [0, 0, 1], [0, 1, 0]])
 LEVELS = {"vertex": 2, "texture": 3, "face": 8}
 
 
-def said(found, expect):
-    texts = "; ".join(found["said"])
-    fits = re.search(expect["warns"], texts, re.I) if "warns" in expect else texts == ""
-    assert fits, f"warns: {texts}"
+def facts(t):
+    """What is to be found: points, and numbers."""
+    scene, cuboid = t.read("found", "scene.json"), t.read("cuboid.json")
+    world_from_body = rigid(scene["rotation"], scene["position"])
+    surface = apply(rigid(scene["camera"]["rotation"], scene["camera"]["position"]), t.placed)
+    points = {
+        "body": t.points,
+        "placed": t.placed,
+        "placed, OpenGL": apply(FLIP, t.placed),
+        "surface": surface,
+        # With a support, the world of a GLB is the scene's with y up; z up in the files for simulators.
+        "surface, y up": surface[:, [0, 2, 1]] * [1, 1, -1],
+        "corners": np.reshape(cuboid["corners"], (-1, 3)),
+    }
+    numbers = {
+        "depth": t.depth,
+        "mask": t.mask,
+        "lens": [t.fx, t.fy, t.cx, t.cy],
+        "lens, fy = fx": [t.fx, t.fx, t.cx, t.cy],
+        "focal length": t.fx,
+        "principal point": [t.cx, t.cy],
+        "corner ray": np.linalg.norm(np.linalg.inv(t.K) @ [0, 0, 1]),
+        "rotation": t.matrix[:3, :3],
+        "matrix": world_from_body,
+        "quaternion": scene["rotation"],
+        "mass": scene["mass"],
+        "centre of mass": apply(world_from_body, scene["centerOfMass"]),
+        "centre of mass in the body": scene["centerOfMass"],
+        "moments": np.sort(scene["principalMoments"]),
+        "parts": scene["parts"],
+    }
+    return points, numbers
 
 
 def mesh(t, found, expect):
-    said(found, expect)
+    """The points of a mesh in the axes of the body, once its volume and its colours are right."""
     axes = AXES[expect.get("axes", "same")]
-    in_body = lambda numbers: np.reshape(numbers, (-1, 3)) @ axes.T / expect.get("unit", 1)
-    points, triangles = in_body(found["positions"]), np.reshape(found["indices"], (-1, 3))
-    limit = expect.get("limitM", 2e-7)
-    a, b, c = points[triangles].transpose(1, 0, 2)
-    volume = np.linalg.det(axes) * (a * np.cross(b, c)).sum() / 6 / t.volume
-    assert abs(volume - 1) < 1e-4 + 100 * limit, f"volume {volume:.4f} of the body's"
+    in_body = lambda numbers: np.reshape(numbers, (-1, 3)) @ axes.T / expect.get("metre", 1)
+    points = in_body(found["positions"])
+    share = np.linalg.det(axes) * volume(points, np.reshape(found["indices"], (-1, 3))) / t.volume
+    assert abs(share - 1) < 1e-4 + 100 * expect["limit"], f"volume {share:.4f} of the body's"
+
     if "colors" in expect:
         assert found["colors"], "no colours"
         wanted = colours(in_body(found["places"]))
@@ -43,55 +81,56 @@ def mesh(t, found, expect):
         levels = np.abs(wanted - np.reshape(found["colors"], (-1, 3))).mean()
         most = expect.get("colorLimit", LEVELS[expect["colors"]])
         assert levels <= most, f"colours differ by {levels:.1f} levels, more than {most}"
-    return farthest(points, t.points), limit, "m"
+    return points
 
 
-def depth(t, found, expect):
-    assert [found["width"], found["height"]] == [t.width, t.height], f"size {found['width']} x {found['height']}"
-    differences = np.abs(np.reshape(found["data"], t.depth.shape) - t.depth)
+def difference(t, known, found, expect):
+    points, numbers = known
+    wanted = expect["wanted"]
+    if wanted in points:
+        found = np.reshape(found, (-1, 3))
+        both = [directed_hausdorff(points[wanted], found)[0], directed_hausdorff(found, points[wanted])[0]]
+        return both[0] if expect.get("among") else max(both)
+
+    wanted = np.load(expect["against"]) if "against" in expect else np.asarray(numbers.get(wanted, wanted), float)
+    found = np.reshape(np.asarray(found, float), wanted.shape if wanted.ndim else np.shape(found))
+    differences = np.abs(found - wanted) / (wanted if expect.get("relative") else 1)
+    if expect.get("unit") == "pixels" and wanted.ndim == 2:
+        return np.count_nonzero(differences)
     differences = np.sort(differences[t.mask > 0] if "only" in expect else differences.ravel())
-    return differences[int(np.ceil(expect.get("share", 1) * len(differences))) - 1], expect.get("limitM", 1e-7), "m"
+    return differences[int(np.ceil(expect.get("share", 1) * len(differences))) - 1]
 
 
-def mask(t, found, expect):
-    assert [found["width"], found["height"]] == [t.width, t.height], f"size {found['width']} x {found['height']}"
-    wanted = np.load(expect["against"]) if "against" in expect else t.mask
-    return (np.reshape(found["data"], t.mask.shape) != wanted).sum(), expect.get("limitPixels", 0), "pixels"
-
-
-def camera(t, found, expect):
-    said(found, expect)
-    wanted = {"fx": t.fx, "fy": t.fy, "cx": t.cx, "cy": t.cy} | expect.get("camera", {})
-    return max(abs(found[key] - each) for key, each in wanted.items()), 1e-3, "pixels"
-
-
-def pose(t, found, expect):
-    return np.abs(apply(np.reshape(found["matrix"], (4, 4)).T, t.points) - t.placed).max(), 1e-6, "m"
-
-
-def glb(t, found, expect):
-    """What a program of npm shows of our file: points in the frame of its camera."""
-    wanted = t.placed if expect["frame"] == "opencv" else apply(FLIP, t.placed)
-    return farthest(np.reshape(found["positions"], (-1, 3)), wanted), LIMIT, "m"
-
-
-def cell(t, row):
-    expect = row.pop("expect")
-    found = read(row.pop("read"))
-    if "code" in found:
+def cell(t, known, row):
+    """What came of a row: whether it is as stated, and the difference."""
+    found = row.pop("found")
+    expect = (FILES[row["kind"]] if row["action"] == "write" else {}) | row.pop("expect")
+    if isinstance(found, dict) and "code" in found:
         stated = found["code"] == expect.get("refused") and re.search(expect.get("says", ""), found["message"], re.I)
         return row | {"passed": bool(stated), "result": f"refused: {found['message']}"}
     if "refused" in expect:
         return row | {"passed": False, "result": f"read, instead of {expect['refused']}"}
+
     if "against" in expect:
         expect["against"] = os.path.join(os.path.dirname(row["file"]), expect["against"])
     try:
-        return row | outcome(*globals()[row["kind"].lower()](t, found, expect))
-    except AssertionError as error:
-        return row | {"passed": False, "result": str(error)}
+        if row["action"] == "write":
+            texts = "; ".join(found["said"])
+            assert re.search(expect["warns"], texts, re.I) if "warns" in expect else texts == "", f"warns: {texts}"
+            found = mesh(t, found, expect) if row["kind"] == "mesh" else found["data"]
+        error = difference(t, known, found, expect)
+    except (AssertionError, ValueError) as wrong:
+        return row | {"passed": False, "result": str(wrong)}
+
+    limit = expect.get("limit", 1e-6)
+    unit = "m" if expect["wanted"] in known[0] else expect.get("unit", "")
+    result = f"{round(float(found), 3) + 0:g}" if row["action"] == "place" else f"{error:.2g} {unit}".strip() + f", at most {limit}"
+    return row | {"passed": bool(error <= limit), "error": float(error), "unit": unit, "result": result}
 
 
-def check(root):
-    path = os.path.join(root, "rows", "read.json")
+def check(root, path):
     t = Truth(root)
-    dump(path, [cell(t, row) for row in read(path)])
+    known = facts(t)
+    with open(path) as file:
+        rows = json.load(file)
+    dump(path, [row if "passed" in row else cell(t, known, row) for row in rows])

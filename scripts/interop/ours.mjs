@@ -65,7 +65,7 @@ export async function writeOurs(folder, truth) {
   }
 
   const { width, height } = camera;
-  const mask = { data: new Uint8Array(readFileSync(join(truth, "mask.u8"))), width, height };
+  const mask = { data: Uint8Array.from(known.mask.flat()), width, height };
   const coco = (/** @type {object} */ segmentation, iscrowd = 0) => ({
     images: [{ id: 1, file_name: "rgb.png", width, height }],
     annotations: [{ id: 1, image_id: 1, category_id: 1, iscrowd, segmentation, bbox: [0, 0, 1, 1], area: 1 }],

@@ -1,21 +1,21 @@
 /** Our readers on a file: what they return, as plain numbers, or the error. */
-import { readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { readdirSync, readFileSync } from "node:fs";
 import { basename, dirname, join } from "node:path";
+import { NodeIO } from "@gltf-transform/core";
 import { packageDir } from "../lib/paths.mjs";
+import { root } from "./cells.mjs";
 
+/** @typedef {import("./cells.mjs").Written} Written */
 /** @type {typeof import("../../pkg/formats.js")} */
 const formats = await import(join(packageDir, "formats.js"));
 /** @type {typeof import("../../pkg/conventions.js")} */
-const { fromRle } = await import(join(packageDir, "conventions.js"));
-
-/** A file that a program wrote; `expect` has what `checks.py` says, and options of our reader. */
-/** @typedef {{ program: string, version: string, kind: string, variant: string, file: string, expect: any }} Written */
+const { applyToPoints, fromRle } = await import(join(packageDir, "conventions.js"));
 
 /** Points of the surface whose colours are compared. */
 const EVERY = 16;
 const SIZE = { width: 160, height: 120 };
 
-/** @type {Record<string, (bytes: Uint8Array, written: Written) => Promise<object>>} */
+/** @type {Record<string, (bytes: Uint8Array, written: Written) => Promise<object | number>>} */
 const readers = {
   async mesh(bytes, { file, expect }) {
     const beside = readdirSync(dirname(file)).filter((name) => name !== basename(file));
@@ -30,28 +30,33 @@ const readers = {
     return { positions: places, indices: Array.from(indices), ...print, said: [...warnings, ...unread] };
   },
   async depth(bytes, { expect }) {
-    const { data, width, height } = await formats.readDepth(bytes, expect.options);
-    return { data: Array.from(data), width, height };
+    const { data } = await formats.readDepth(bytes, expect.options);
+    return { data: Array.from(data), said: [] };
   },
   async mask(bytes, { expect: { rle } }) {
     const text = () => JSON.parse(new TextDecoder().decode(bytes));
-    const read = rle === undefined ? await formats.readMask(bytes) : fromRle(text(), rle, SIZE);
-    return { ...read, data: Array.from(read.data, (each) => (each === 0 ? 0 : 1)) };
+    const { data } = rle === undefined ? await formats.readMask(bytes) : fromRle(text(), rle, SIZE);
+    return { data: Array.from(data, (each) => (each === 0 ? 0 : 1)), said: [] };
   },
   async camera(bytes) {
-    const read = await formats.readCamera(bytes, SIZE);
-    return { ...read, said: [...read.warnings, ...(read.doubts ?? []), ...(read.unread ?? [])] };
+    const { fx, fy, cx, cy, warnings, doubts = [], unread = [] } = await formats.readCamera(bytes, SIZE);
+    return { data: [fx, fy, cx, cy], said: [...warnings, ...doubts, ...unread] };
   },
   async pose(bytes) {
-    return { matrix: Array.from((await formats.readPose(bytes))?.transform.matrix ?? []) };
+    const { points } = JSON.parse(readFileSync(join(root, "truth", "truth.json"), "utf8"));
+    const read = await formats.readPose(bytes);
+    return { data: Array.from(read ? applyToPoints(read.transform, Float64Array.from(points.flat())) : []), said: [] };
+  },
+  /** The first number of the colours in a GLB, without our reader. */
+  async grey(_, { file }) {
+    const [mesh] = (await new NodeIO().read(file)).getRoot().listMeshes();
+    const colors = mesh?.listPrimitives()[0]?.getAttribute("COLOR_0")?.getArray() ?? [];
+    return (colors[0] ?? 0) * (colors instanceof Float32Array ? 255 : 1);
   },
 };
 
-/** Reads what a program wrote, for `checks.py`: the row with the path of what was read. @param {Written} written */
+/** What a reader returns of a file that a program wrote, for `checks.py`. @param {Written} written */
 export async function readBack(written) {
   const bytes = readFileSync(written.file);
-  const read = await readers[written.kind]?.(bytes, written).catch(({ code = "none", message }) => ({ code, message }));
-  const path = `${written.file}.${written.kind}.read`;
-  writeFileSync(path, JSON.stringify(read));
-  return { ...written, read: path };
+  return readers[written.of]?.(bytes, written).catch(({ code = "none", message }) => ({ code, message }));
 }

@@ -1,13 +1,11 @@
 /** What a run leaves in the repository: the table of the guide, a row for each program and version, all cells, and fixtures. */
-import { copyFileSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { extname, join } from "node:path";
 import { at } from "../lib/paths.mjs";
+import { rewrite } from "../lib/rewrite.mjs";
+import { data } from "./cells.mjs";
 
-/** @typedef {{ action: "write" | "load" | "place", program: string, version: string, kind: string, variant: string, passed: boolean, result: string, error?: number, unit?: string }} Cell */
-
-const guide = at("docs", "guides", "interoperability.md");
-const list = at("docs", "record", "interop.tsv");
-const data = (/** @type {string} */ name) => JSON.parse(readFileSync(at("scripts", "interop", name), "utf8"));
+/** @typedef {import("./cells.mjs").Cell & { passed: boolean, result: string }} Cell */
 
 /** Counts by kind: "mesh 12, depth 3". @param {readonly Cell[]} cells */
 function counts(cells) {
@@ -30,15 +28,15 @@ function largest(cells) {
 }
 
 /** Puts content between the markers of the guide. @param {string} mark @param {string} content */
-function writeBetween(mark, content) {
-  const marked = new RegExp(`(<!-- ${mark} -->\\n)[\\s\\S]*(<!-- /${mark} -->)`);
-  const text = readFileSync(guide, "utf8").replace(marked, (_, start, end) => `${start}${content}${end}`);
-  writeFileSync(guide, text);
-}
+const writeBetween = (mark, content) =>
+  rewrite([at("docs", "guides", "interoperability.md")], (text) => {
+    const marked = new RegExp(`(<!-- ${mark} -->\\n)[\\s\\S]*(<!-- /${mark} -->)`);
+    return text.replace(marked, (_, start, end) => `${start}\n${content}\n\n${end}`);
+  });
 
 /** Writes the table of the places where programs differ. @param {readonly Cell[]} cells */
 export function writePlaces(cells) {
-  const rows = Object.entries(data("decisions.json")).map(([question, decision]) => {
+  const rows = Object.values(data("places")).map(({ question, decision }) => {
     const own = cells.filter(({ action, kind }) => action === "place" && kind === question);
     // Versions with the same answer are in one line.
     /** @type {Map<string, string[]>} */
@@ -50,12 +48,12 @@ export function writePlaces(cells) {
     const lines = Array.from(versions, ([answer, all]) => answer.replace("|", ` ${all.join(" and ")}`));
     return `| ${question} | ${lines.join("<br>")} | ${decision} |`;
   });
-  writeBetween("places", `\n| question | answers | what to do |\n|---|---|---|\n${rows.join("\n")}\n\n`);
+  writeBetween("places", `| question | answers | what to do |\n|---|---|---|\n${rows.join("\n")}`);
 }
 
 /** Writes the table of programs. @param {readonly Cell[]} cells @param {string} date */
 export function writeTable(cells, date) {
-  const notes = data("notes.json");
+  const notes = data("notes");
   const name = (/** @type {Cell} */ { program, version }) => `${program} ${version}`;
   const names = [...new Set(cells.filter(({ action }) => action !== "place").map(name))].sort((a, b) =>
     a.localeCompare(b, "en", { sensitivity: "base", numeric: true }),
@@ -75,12 +73,15 @@ export function writeTable(cells, date) {
   const total = `Measured on ${date}: ${cells.length} cells, ${misses === 0 ? "all as stated" : `${misses} not as stated`}; [every cell](../record/interop.tsv).`;
   const head =
     "| program | what it writes, read by sim3align | what it loads of sim3align | largest difference, mm | what to know |\n|---|---|---|---|---|";
-  writeBetween("interop", `\n${total}\n\n${head}\n${rows.join("\n")}\n\n`);
+  writeBetween("interop", `${total}\n\n${head}\n${rows.join("\n")}`);
   const lines = cells.map((cell) => {
     const short = cell.result.replace(/\s+/g, " ").replaceAll(at(), "").slice(0, 160);
     return [name(cell), cell.action, cell.kind, cell.variant, cell.passed ? "as stated" : "MISS", short].join("\t");
   });
-  writeFileSync(list, `program\taction\tkind\tvariant\toutcome\tdifference\n${lines.sort().join("\n")}\n`);
+  writeFileSync(
+    at("docs", "record", "interop.tsv"),
+    `program\taction\tkind\tvariant\toutcome\tdifference\n${lines.sort().join("\n")}\n`,
+  );
 }
 
 /** Bytes of a fixture at most. */
@@ -91,7 +92,7 @@ export function writeFixtures(rows) {
   const folder = at("tests", "fixtures", "interop");
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
-  const index = data("fixtures.json").map((/** @type {string} */ title) => {
+  const index = data("fixtures").map((/** @type {string} */ title) => {
     const row = rows.find(({ program, version, variant }) => title === `${program} ${version}: ${variant}`);
     if (row === undefined) throw new Error(`No program wrote the fixture ${title}`);
     const { program, version, kind, variant, file, expect } = row;

@@ -2,6 +2,7 @@
 
 import json
 import os
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -16,10 +17,37 @@ TRANSLATION = np.array([-0.1, 0.01, 0.35])
 CAMERA = {"fx": 150, "fy": 152, "cx": 78.5, "cy": 60.25, "width": 160, "height": 120}
 
 
-def rotation(xyzw):
-    x, y, z, w = np.asarray(xyzw, float) / np.linalg.norm(xyzw)
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + 2 * w * cross + 2 * cross @ cross
+class Truth(SimpleNamespace):
+    """The object as arrays, by the names that `writes.json` has, and the files that show it."""
+
+    def __init__(self, root):
+        self.folder = os.path.join(root, "truth")
+        self.texture = os.path.join(self.folder, "texture.png")
+        self.root = root
+        with np.load(os.path.join(self.folder, "truth.npz")) as known:
+            super().__init__(**{name: each if each.ndim else each.item() for name, each in known.items()})
+
+    def ours(self, *path):
+        """The path of a file that we wrote (`ours.mjs`)."""
+        return os.path.join(self.root, "ours", *path)
+
+    def read(self, *path):
+        with open(self.ours(*path)) as file:
+            return json.load(file)
+
+
+def apply(matrix, points):
+    return np.asarray(points, float) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def rigid(turn, position):
+    """A matrix of a rotation, which is a matrix or x, y, z, w, and a position."""
+    from scipy.spatial.transform import Rotation
+
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn if np.ndim(turn) == 2 else Rotation.from_quat(turn).as_matrix()
+    matrix[:3, 3] = position
+    return matrix
 
 
 def colours(points):
@@ -31,6 +59,11 @@ def colours(points):
 def light(srgb):
     srgb = np.asarray(srgb) / 255
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+
+
+def volume(points, triangles):
+    a, b, c = points[triangles].transpose(1, 0, 2)
+    return (a * np.cross(b, c)).sum() / 6
 
 
 def body():
@@ -61,29 +94,74 @@ def picture(points, triangles):
         depth = np.where((s >= 0) & (t >= 0) & (s + t <= 1) & (z < depth), z, depth)
     mask = depth < wall
     depth[5:12, 10:20] = 0
-    return depth.astype(np.float32), mask.astype(np.uint8)
+    return rays, depth.astype(np.float32), mask.astype(np.uint8)
+
+
+def known():
+    """Everything about the object, as arrays."""
+    from scipy.spatial.transform import Rotation
+
+    points, triangles = body()
+    colors = np.round(colours(points)).astype(np.uint8)
+    face_colors = np.round(colors[triangles].mean(1)).astype(np.uint8)
+    rgba, face_rgba = (np.c_[each, np.full(len(each), 255, np.uint8)] for each in (colors, face_colors))
+    matrix = rigid(QUATERNION, TRANSLATION)
+    placed = apply(matrix, points)
+
+    rays, depth, mask = picture(placed, triangles)
+    level = mask * np.uint8(255)
+    fx, fy, cx, cy = (CAMERA[name] for name in ("fx", "fy", "cx", "cy"))
+    rows, columns = np.nonzero(mask)
+    return CAMERA | {
+        "points": points,
+        "triangles": triangles.astype(np.int32),
+        "volume": volume(points, triangles),
+        "corner": CORNER,
+        "uv": MARGIN + (1 - 2 * MARGIN) * (points - CORNER)[:, :2] / SIZE[:2],
+        "colors": colors,
+        "rgba": rgba,
+        "face_rgba": face_rgba,
+        "lights": light(colors),
+        # By 30° about z, x and y.
+        "turned": Rotation.from_euler("zxy", [30, 30, 30], degrees=True).apply(points),
+        # OpenCV camera from body, and the body's points where the camera sees them.
+        "quaternion": QUATERNION,
+        "translation": TRANSLATION,
+        "matrix": matrix,
+        "placed": placed,
+        "K": np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1.0]]),
+        "depth": depth,
+        "depth_nan": np.where(depth == 0, np.float32(np.nan), depth),
+        "depth_inf": np.where(depth == 0, np.float32(np.inf), depth),
+        "mm": np.round(depth * 1000).astype(np.uint16),
+        # OpenCV takes three channels for blue, green and red, and so turns x, y, z round.
+        "zyx": (rays * depth[..., None])[..., ::-1].astype(np.float32),
+        "mask": mask,
+        # The runs of its columns, as COCO counts them.
+        "runs": np.diff(np.r_[0, np.flatnonzero(np.diff(mask.ravel(order="F"), prepend=0)), mask.size]),
+        # Its first and its last pixels, what is between them, and a box around them.
+        "mask_corners": np.array([[columns.min(), rows.min()], [columns.max(), rows.max()]], float),
+        "mask_part": mask[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1],
+        "box": np.array([columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]),
+        "red": mask[..., None] * np.uint8([0, 0, 255]),
+        "cut_out": np.dstack([level // 2 + 90, level // 3 + 40, level // 4 + 70, level]),
+        "logits": (mask * 20.0 - 10).astype(np.float32),
+    }
 
 
 def write(root):
-    """What the programs read: `truth.json`, a texture, two GLB files, and the bare numbers of depth and mask."""
+    """What the programs read: the arrays, some of them as JSON, a texture, and two GLB files."""
     import trimesh
     from PIL import Image
 
     folder = os.path.join(root, "truth")
     os.makedirs(folder, exist_ok=True)
-    points, triangles = body()
-    colors = np.round(colours(points))
-    uv = MARGIN + (1 - 2 * MARGIN) * (points - CORNER)[:, :2] / SIZE[:2]
-    volume = trimesh.Trimesh(points, triangles, process=False).volume
-    known = {"points": points, "triangles": triangles, "colors": colors, "lights": light(colors), "uv": uv, "corner": CORNER}
-    known = {name: each.tolist() for name, each in known.items()} | {"volume": float(volume), "camera": CAMERA}
-    known["pose"] = {"scale": 1, "rotation": QUATERNION.tolist(), "translation": TRANSLATION.tolist()}
+    arrays = known()
+    np.savez(os.path.join(folder, "truth.npz"), **arrays)
+    plain = {name: arrays[name].tolist() for name in ("points", "triangles", "lights", "corner", "mask")}
+    pose = {"scale": 1, "rotation": QUATERNION.tolist(), "translation": TRANSLATION.tolist()}
     with open(os.path.join(folder, "truth.json"), "w") as file:
-        json.dump(known, file)
-
-    depth, mask = picture(points @ rotation(QUATERNION).T + TRANSLATION, triangles)
-    depth.tofile(os.path.join(folder, "depth.f32"))
-    mask.tofile(os.path.join(folder, "mask.u8"))
+        json.dump(plain | {"pose": pose, "camera": CAMERA}, file)
 
     row, column = np.mgrid[:36, :68] + 0.5
     share = (np.c_[column.ravel() / 68, 1 - row.ravel() / 36] - MARGIN) / (1 - 2 * MARGIN)
@@ -92,13 +170,13 @@ def write(root):
     image.save(os.path.join(folder, "texture.png"))
 
     material = trimesh.visual.material.PBRMaterial(baseColorTexture=image, metallicFactor=0.0)
-    textured = trimesh.Trimesh(points, triangles, process=False)
-    textured.visual = trimesh.visual.TextureVisuals(uv, material)
+    textured = trimesh.Trimesh(arrays["points"], arrays["triangles"], process=False)
+    textured.visual = trimesh.visual.TextureVisuals(arrays["uv"], material)
     textured.export(os.path.join(folder, "texture.glb"))
 
     # trimesh writes colours as bytes: as an attribute of its own they are floats of light.
-    lights = light(colors).astype(np.float32)
-    lit = trimesh.Trimesh(points, triangles, process=False, vertex_attributes={"_COLOR_0": lights})
+    attributes = {"_COLOR_0": arrays["lights"].astype(np.float32)}
+    lit = trimesh.Trimesh(arrays["points"], arrays["triangles"], process=False, vertex_attributes=attributes)
 
     def rename(tree):
         attributes = tree["meshes"][0]["primitives"][0]["attributes"]

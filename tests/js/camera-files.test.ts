@@ -342,6 +342,16 @@ test("of several images or cameras one has to be chosen", async () => {
     ],
   };
   assert.equal((await readCamera(named, { imageId: "0002" })).fx, 600);
+  const single: [Parameters<typeof readCamera>[0], string | number, RegExp][] = [
+    [{ "3": entry(3) }, 4, /found "4", expected one of 3\./],
+    [{ left: intrinsics }, "right", /found "right", expected one of left\./],
+    [{ frames: [named.frames[0]] }, "0002", /found "0002", expected one of images\/0001\.png\./],
+    [entry(3), 3, /found "3", expected nothing: the file holds one camera, without an id\. Omit it\./],
+  ];
+  for (const [one, imageId, message] of single) {
+    await rejectsWith(() => readCamera(one, { imageId }), "INVALID_ARGUMENT options.imageId", message);
+  }
+  assert.equal((await readCamera({ left: intrinsics }, { imageId: "left" })).fx, 600);
   const pair = { depth_camera: intrinsics, color_camera: other };
   const { fx, doubts } = await readCamera(pair);
   assert.deepEqual([fx, /2 cameras/.test(doubts?.[0] ?? "")], [600, true]);

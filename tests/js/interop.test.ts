@@ -13,7 +13,7 @@ interface Row {
   kind: string;
   variant: string;
   file: string;
-  expect: { axes?: string; warns?: string; refused?: string; says?: string; limitM?: number; camera?: object };
+  expect: { axes?: string; warns?: string; refused?: string; says?: string; limit?: number; camera?: object };
 }
 
 const folder = join(repository, "tests", "fixtures", "interop");
@@ -36,7 +36,7 @@ for (const { program, version, variant, ...row } of rows("mesh")) {
     const toBody = row.expect.axes === "y-up" ? ([x = 0, y = 0, z = 0]: number[]) => [x, -z, y] : (p: number[]) => p;
     const point = (from: ArrayLike<number>, i: number) => toBody([0, 1, 2].map((k) => from[3 * i + k] ?? 0));
     const points = Array.from({ length: mesh.positions.length / 3 }, (_, i) => point(mesh.positions, i));
-    const limit = row.expect.limitM ?? 1e-6;
+    const limit = row.expect.limit ?? 1e-6;
     for (const k of [0, 1, 2]) {
       const along = points.map((p) => p[k] ?? 0);
       assert.ok(Math.abs(Math.min(...along) - (lower[k] ?? 0)) <= limit, `lower ${k}: ${Math.min(...along)}`);

@@ -138,17 +138,18 @@ async function contentOf(argument: string, content: JsonFile): Promise<unknown> 
   }
 }
 
-/** The cameras of the id, if the file has ids; `undefined` without an id, or where ids do not matter. */
+/** The cameras of the id; `undefined` without one. */
 function idMatch(places: readonly CameraPlace[], id: string | undefined, names: CameraFileNames) {
-  const isById = places.length > 1 || /^\d+$/.test(places[0]?.names.at(-1) ?? "");
-  if (id === undefined || !isById) return undefined;
+  if (id === undefined) return undefined;
   // In BOP, ids have no leading zeros, unlike file names; nerfstudio has paths of files.
   const short = (text: string) => text.replace(/^.*[\\/]|\.\w+$/g, "").replace(/^0+(?=.)/, "");
   const exact = places.filter((place) => place.names.includes(id));
   const found =
     exact.length > 0 ? exact : places.filter((place) => place.names.some((name) => short(name) === short(id)));
   if (found.length > 0) return found;
-  throw severalCameras(places, JSON.stringify(id), names);
+  if (places.some((place) => place.names.length > 0)) throw severalCameras(places, JSON.stringify(id), names);
+  const expected = "nothing: the file holds one camera, without an id";
+  throw failure("INVALID_ARGUMENT", `${names.options}imageId`, JSON.stringify(id), expected, "Omit it.");
 }
 
 /** Words in the names of cameras to which depth mostly belongs, and in those of others, beside which that is certain. */
