@@ -12,7 +12,6 @@ import { run } from "./lib/run.mjs";
 import { buildSite } from "./lib/site.mjs";
 import { serve } from "./lib/static-server.mjs";
 import { script } from "./lib/step.mjs";
-import { framesPicture } from "./pictures/frames.mjs";
 
 /** @typedef {import("playwright-core").Page} Page */
 
@@ -143,6 +142,4 @@ await script(async () => {
     await browser.close();
     await Promise.all([site.close(), files.close()]);
   }
-  const { fromFrame } = await import(pathToFileURL(join(packageDir, "conventions.js")).href);
-  writeFileSync(at("docs", "pictures", "frames.svg"), framesPicture(fromFrame));
 });

@@ -22,79 +22,38 @@ use sim3align_geometry::depth_kind::DepthKind;
 use sim3align_geometry::pinhole::Pinhole;
 use sim3align_runtime::error::{Error, ErrorCode, Result};
 
-/// Names of depth, in order of preference.
-const DEPTH: [&str; 6] = ["depth", "depth_map", "depthmap", "pred_depth", "predicted_depth", "prediction"];
+/// Names of depth, in order of preference; here and below, with spaces between them.
+const DEPTH: &str = "depth depth_map depthmap pred_depth predicted_depth prediction";
 
 /// Names of inverse depth.
-const DISPARITY: [&str; 4] = ["disparity", "inverse_depth", "inv_depth", "disp"];
+const DISPARITY: &str = "disparity inverse_depth inv_depth disp";
 
 /// Names of point maps in the frame of the camera.
-const POINTS: [&str; 10] =
-    ["points", "point_map", "pointmap", "pts3d", "points3d", "pts", "xyz", "xyz_map", "points_cam", "pts3d_cam"];
+const POINTS: &str = "points point_map pointmap pts3d points3d pts xyz xyz_map points_cam pts3d_cam";
 
 /// Names of masks of the pixels that have depth.
-const MASKS: [&str; 3] = ["mask", "valid", "valid_mask"];
+const MASKS: &str = "mask valid valid_mask";
 
-const INTRINSICS: [&str; 9] = [
-    "intrinsics",
-    "intrinsic",
-    "k",
-    "cam_k",
-    "camera_k",
-    "camera_matrix",
-    "intrinsic_matrix",
-    "camera_intrinsics",
-    "intrinsics_matrix",
-];
+const INTRINSICS: &str = "intrinsics intrinsic k cam_k camera_k camera_matrix intrinsic_matrix camera_intrinsics \
+    intrinsics_matrix";
 /// In pixels: one number, or two for columns and rows.
-const FOCAL_LENGTHS: [&str; 9] = [
-    "focallength_px",
-    "focal_length_px",
-    "f_px",
-    "focal",
-    "focals",
-    "focal_length",
-    "focal_lengths",
-    "focallength",
-    "focal_px",
-];
+const FOCALS: &str = "focallength_px focal_length_px f_px focal focals focal_length focal_lengths focallength focal_px";
 /// In pixels, beside focal lengths.
-const PRINCIPAL_POINTS: [&str; 4] = ["principal_point", "principal_points", "pp", "pps"];
-const FIELDS_OF_VIEW: [[&str; 1]; 2] = [["fov_x"], ["fov_y"]];
+const CENTERS: &str = "principal_point principal_points pp pps";
+const FOV_X: &str = "fov_x";
+const FOV_Y: &str = "fov_y";
 
 /// Names of maps that are no depth, and do not matter here.
-const OTHER_MAPS: [&str; 8] =
-    ["conf", "confidence", "uncertainty", "error", "sky", "depth_conf", "pts3d_conf", "world_points_conf"];
+const OTHER_MAPS: &str = "conf confidence uncertainty error sky depth_conf pts3d_conf world_points_conf";
 
 /// Names of what else does not matter here: pictures, normals, poses of the camera, and times.
-const OTHERS: [&str; 26] = [
-    "normal",
-    "normals",
-    "rgb",
-    "image",
-    "images",
-    "img",
-    "color",
-    "colors",
-    "colour",
-    "world_points",
-    "extrinsic",
-    "extrinsics",
-    "pose",
-    "poses",
-    "camera_pose",
-    "camera_poses",
-    "cam2world",
-    "c2w",
-    "w2c",
-    "timestamp",
-    "timestamps",
-    "frame_id",
-    "height",
-    "width",
-    "image_size",
-    "gravity",
-];
+const OTHERS: &str = "normal normals rgb image images img color colors colour world_points extrinsic extrinsics pose \
+    poses camera_pose camera_poses cam2world c2w w2c timestamp timestamps frame_id height width image_size gravity";
+
+/// Whether a name is one of these.
+fn is_among(names: &str, name: &str) -> bool {
+    names.split(' ').any(|one| one == name)
+}
 
 /// Maximum number of entries.
 const MAX_ENTRIES: usize = 1024;
@@ -194,22 +153,9 @@ impl<'a> Archive<'a> {
 
     /// The arrays that are not known, but for the one that is read.
     fn unread(&self, used: &str) -> Vec<String> {
-        let [fov_x, fov_y] = &FIELDS_OF_VIEW;
-        let known: [&[&str]; 11] = [
-            &DEPTH,
-            &DISPARITY,
-            &POINTS,
-            &MASKS,
-            &INTRINSICS,
-            &FOCAL_LENGTHS,
-            &PRINCIPAL_POINTS,
-            fov_x,
-            fov_y,
-            &OTHER_MAPS,
-            &OTHERS,
-        ];
+        let known = [DEPTH, DISPARITY, POINTS, MASKS, INTRINSICS, FOCALS, CENTERS, FOV_X, FOV_Y, OTHER_MAPS, OTHERS];
         let names = self.entries.iter().map(|entry| &entry.name).chain(&self.others);
-        let is_known = |name: &&String| *name == used || known.iter().any(|names| names.contains(&name.as_str()));
+        let is_known = |name: &&String| *name == used || known.iter().any(|names| is_among(names, name));
         names.filter(|name| !is_known(name)).map(|name| format!("the array `{name}` of the depth file")).collect()
     }
 
@@ -218,7 +164,7 @@ impl<'a> Archive<'a> {
         let is_of_size = |entry: &Entry| {
             entry.name != depth.name && matches!(points(entry.clone()), Ok(Source::Points(_, own)) if own == size)
         };
-        let Some(entry) = self.find(&POINTS).filter(is_of_size) else { return Ok(None) };
+        let Some(entry) = self.find(POINTS).filter(is_of_size) else { return Ok(None) };
         let data = self.read(&entry)?;
         let Some(map) = NpyPoints::of(NpyArray::read("depth", &data)?) else { return Ok(None) };
         let image = point_map::read(&map.stored(), &DepthReadOptions::default(), DepthKind::Metric, &|i| map.point(i));
@@ -226,8 +172,8 @@ impl<'a> Archive<'a> {
     }
 
     /// The array with the first of these names that there is.
-    fn find(&self, names: &[&str]) -> Option<Entry> {
-        names.iter().find_map(|name| self.entries.iter().find(|entry| entry.name == *name)).cloned()
+    fn find(&self, names: &str) -> Option<Entry> {
+        names.split(' ').find_map(|name| self.entries.iter().find(|entry| entry.name == name)).cloned()
     }
 
     /// All bytes of an array, decompressed.
@@ -249,18 +195,17 @@ impl<'a> Archive<'a> {
 
     fn source(&self, kind: DepthKind) -> Result<Source> {
         let is_disparity = kind == DepthKind::AffineInvariantDisparity;
-        let disparity = self.find(&DISPARITY);
-        if let Some(entry) = disparity.clone().filter(|_| is_disparity).or_else(|| self.find(&DEPTH)) {
+        let disparity = self.find(DISPARITY);
+        if let Some(entry) = disparity.clone().filter(|_| is_disparity).or_else(|| self.find(DEPTH)) {
             return image(entry);
         }
         let is_map = |entry: &&Entry| {
-            let is_other =
-                [&MASKS[..], &OTHER_MAPS, &DISPARITY].iter().any(|names| names.contains(&entry.name.as_str()));
+            let is_other = [MASKS, OTHER_MAPS, DISPARITY].iter().any(|names| is_among(names, &entry.name));
             let size = entry.header.squeezed(2);
             // Matrices of cameras are smaller.
             entry.header.kind == Kind::Float && size.len() == 2 && size.iter().all(|side| *side > 4) && !is_other
         };
-        if let Some(entry) = self.find(&POINTS).filter(|_| !is_disparity) {
+        if let Some(entry) = self.find(POINTS).filter(|_| !is_disparity) {
             return points(entry);
         }
         let mut maps = self.entries.iter().filter(is_map);
@@ -268,9 +213,7 @@ impl<'a> Archive<'a> {
             return image(only.clone());
         }
         let is_points = |entry: &&Entry| {
-            entry.header.kind == Kind::Float
-                && !OTHERS.contains(&entry.name.as_str())
-                && points((*entry).clone()).is_ok()
+            entry.header.kind == Kind::Float && !is_among(OTHERS, &entry.name) && points((*entry).clone()).is_ok()
         };
         let mut all_points = self.entries.iter().filter(is_points);
         if let (Some(only), None, false) = (all_points.next(), all_points.next(), is_disparity) {
@@ -296,8 +239,8 @@ impl<'a> Archive<'a> {
 
     /// The pixels with depth, if there is a mask of booleans.
     fn mask(&mut self, size: [usize; 2]) -> Result<Option<Vec<bool>>> {
-        let is_mask = |name: &&str| self.find(&[name]).filter(|entry| entry.header.kind == Kind::Bool);
-        let Some(entry) = MASKS.iter().find_map(is_mask) else { return Ok(None) };
+        let is_mask = |name| self.find(name).filter(|entry| entry.header.kind == Kind::Bool);
+        let Some(entry) = MASKS.split(' ').find_map(is_mask) else { return Ok(None) };
         if entry.header.squeezed(2) != size {
             return Err(Error::new(
                 ErrorCode::SizeMismatch,
@@ -313,7 +256,7 @@ impl<'a> Archive<'a> {
     }
 
     fn camera(&mut self) -> Result<FileCamera> {
-        let intrinsics = match self.find(&INTRINSICS) {
+        let intrinsics = match self.find(INTRINSICS) {
             None => None,
             // 3 × 3, also as nine numbers, or as part of a projection of 3 × 4 or 4 × 4.
             Some(entry) if let Some([rows, columns]) = matrix_sides(entry.header.squeezed(1)) => {
@@ -335,15 +278,14 @@ impl<'a> Archive<'a> {
             }
             Some(entry) => return Err(several(&entry, "intrinsics of one image, 3 × 3")),
         };
-        let focal_lengths = self.pair(&FOCAL_LENGTHS)?;
-        let principal_point = self.pair(&PRINCIPAL_POINTS)?;
-        let [fov_x, fov_y] = FIELDS_OF_VIEW;
-        let fields_of_view = [self.pair(&fov_x)?.map(|[x, _]| x), self.pair(&fov_y)?.map(|[y, _]| y)];
+        let focal_lengths = self.pair(FOCALS)?;
+        let principal_point = self.pair(CENTERS)?;
+        let fields_of_view = [self.pair(FOV_X)?.map(|[x, _]| x), self.pair(FOV_Y)?.map(|[y, _]| y)];
         Ok(FileCamera { intrinsics, focal_lengths, principal_point, fields_of_view })
     }
 
     /// Two numbers, or one twice.
-    fn pair(&mut self, names: &[&str]) -> Result<Option<[f64; 2]>> {
+    fn pair(&mut self, names: &str) -> Result<Option<[f64; 2]>> {
         let Some(entry) = self.find(names) else { return Ok(None) };
         let last = match entry.header.count() {
             1 => 0,

@@ -19,6 +19,7 @@ import type { Formats } from "./modules/exports.js";
 import { fileReaders, formatsModule } from "./modules/readers.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
 import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
+import type { Exif, ExternalResources, MaskFromFile, MeshFromFile } from "./types/files.js";
 import type {
   CameraFileInput,
   CocoRle,
@@ -34,7 +35,6 @@ import type { JsonFile } from "./values/json.js";
 import { isRecord } from "./values/kinds.js";
 import type { PixelArray } from "./values/pixels.js";
 import { optionsOf } from "./values/validation.js";
-import type { ColorSamples, Exif, ExternalResources } from "./wasm/formats.js";
 
 export type { CameraFile, ReadCameraOptions } from "./camera/camera-file.js";
 export { type ExifFocal, focalFromExif } from "./camera/exif-focal.js";
@@ -53,38 +53,9 @@ export type {
 } from "./input/mesh-decoders.js";
 export type { DecodeImage } from "./input/webp.js";
 export type { SceneCase } from "./scene/scene-files.js";
+export type { Exif, ExternalResources, MaskFromFile, MeshFromFile } from "./types/files.js";
 export type { DepthImage, ReadDepthOptions } from "./types/inputs.js";
 export { Sim3AlignError } from "./values/error.js";
-export type { Exif, ExternalResources } from "./wasm/formats.js";
-
-/** A mesh from a file, in the unit and axes of the file. */
-export interface MeshFromFile {
-  /** Interleaved x, y, z. */
-  positions: Float32Array;
-  /**
-   * What was subtracted from the coordinates of the file, if these are far from zero, as in a map: 32-bit numbers would not
-   * resolve them. Poses of these arrays are relative to it.
-   */
-  origin?: [number, number, number];
-  /** Three vertex indices per triangle. */
-  indices: Uint32Array;
-  /** The colours of the surface, from vertices, materials and textures, if the file has any that can be read. */
-  samples?: ColorSamples;
-  /** How many copies of one mesh a glTF file places, if it has no other mesh; all of them are read as one object. */
-  copies?: number;
-  /** Content of the file that its reader does not know. */
-  unread?: readonly string[];
-  /** Why the colours cannot be read; empty if they can, or if there are none. */
-  warnings: string[];
-}
-
-/** A mask from a file, row-major; 1 is the object. */
-export interface MaskFromFile extends PixelArray<Uint8Array> {
-  /** Which values of the file are the object: `"values of 127.5 or more, of 0 to 255"`; of JSON, which of several masks. */
-  reading?: string;
-  /** Content of the file that its reader does not know. */
-  unread?: readonly string[];
-}
 
 /**
  * Loads the formats module. Only needed if it is not at `wasm/formats_bg.wasm` next to this script; only the `wasm` of

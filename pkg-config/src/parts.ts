@@ -48,6 +48,7 @@ export type {
   WorldUncertainty,
 } from "./generated/types.js";
 export type { Direction, SymmetryAxis } from "./types/argument-types.js";
+export type { ColorSamples } from "./types/files.js";
 export type { FieldOfViewCamera, MatrixCamera, UnknownCamera } from "./types/inputs.js";
 export type { OptionsOf } from "./types/options.js";
 export type { BlobLike, NodeWorkerLike, SignalLike, UrlLike, WebWorkerLike, WorkerEvent } from "./types/platform.js";
@@ -55,4 +56,3 @@ export type { LabelMap, SceneMetrics } from "./types/scene.js";
 export type { ErrorParts } from "./values/error.js";
 export type { DepthPixels, ImageSize, MaskPixels } from "./values/pixels.js";
 export type { Quaternion, Vector3 } from "./values/validation.js";
-export type { ColorSamples } from "./wasm/formats.js";

@@ -102,11 +102,7 @@ async function nodeTest(folders, { env = {}, concurrency = availableParallelism(
 
 /** @param {boolean} isAll whether the tests that need packages of Python get them */
 export async function javaScript(isAll) {
-  const pythons = {
-    SIM3ALIGN_SIMULATORS: "simulators",
-    SIM3ALIGN_NOTEBOOKS: "notebooks",
-    SIM3ALIGN_DEPTH_FILES: "depth-files",
-  };
+  const pythons = { SIM3ALIGN_SIMULATORS: "simulators", SIM3ALIGN_NOTEBOOKS: "notebooks" };
   /** @type {NodeJS.ProcessEnv} */
   const env = {};
   for (const [name, folder] of isAll ? Object.entries(pythons) : []) {

@@ -164,18 +164,65 @@ test("a point map in any frame is read as its depth, with the camera that sees i
   await assert.rejects(readDepth(colours), { code: "UNSUPPORTED_FORMAT" });
 });
 
-test("focal lengths and principal points of an archive are its camera; arrays that are not known are named", async () => {
-  const arrays = {
-    depth: npy(depth, height, width),
-    ...{
-      focals: shaped(Float32Array.of(camera.fx), "(1,)"),
-      principal_points: shaped(Float32Array.of(80, 61), "(1, 2)"),
+const map = (shape: string) => shaped(depth, shape);
+const degrees = (side: number, focal: number) =>
+  shaped(Float32Array.of((360 / Math.PI) * Math.atan(side / 2 / focal)), "()");
+const { fx, fy, cx, cy } = camera;
+
+const middle = [(width - 1) / 2, (height - 1) / 2];
+
+/** Archives, as the programs around depth models save them, and the numbers of their cameras. */
+const archives: [what: string, camera: number[], arrays: Record<string, Uint8Array>][] = [
+  [
+    "Depth Pro",
+    [fx, fx, ...middle],
+    { depth: map(`(${height}, ${width})`), focallength_px: shaped(Float32Array.of(fx), "()") },
+  ],
+  [
+    "UniDepth, a batch of one image",
+    [fx, fy, cx, cy],
+    {
+      depth: map(`(1, 1, ${height}, ${width})`),
+      intrinsics: shaped(Float32Array.of(fx, 0, cx, 0, fy, cy, 0, 0, 1), "(1, 3, 3)"),
     },
-    ...{ confidence: npy(depth, height, width), odd: npy(depth, height, width) },
-  };
-  const { camera: found, unread } = await readDepth(archive(arrays));
-  assertNear(Object.values(found ?? {}), [camera.fx, camera.fx, 80, 61], "camera", 1e-4);
-  assert.deepEqual(unread, ["the array `odd` of the depth file"]);
+  ],
+  [
+    "MoGe, in image sizes",
+    [fx, fy, cx, cy],
+    {
+      depth: map(`(${height}, ${width})`),
+      intrinsics: npy(
+        Float32Array.of(fx / width, 0, (cx + 0.5) / width, 0, fy / height, (cy + 0.5) / height, 0, 0, 1),
+        3,
+        3,
+      ),
+    },
+  ],
+  [
+    "fields of view",
+    [fx, fy, ...middle],
+    { pred_depth: map(`(${height}, ${width})`), fov_x: degrees(width, fx), fov_y: degrees(height, fy) },
+  ],
+  [
+    "DUSt3R, with arrays that are not known",
+    [fx, fx, cx, cy],
+    {
+      depth: map(`(${height}, ${width})`),
+      focals: shaped(Float32Array.of(fx), "(1,)"),
+      principal_points: shaped(Float32Array.of(cx, cy), "(1, 2)"),
+      confidence: map(`(${height}, ${width})`),
+      odd: map(`(${height}, ${width})`),
+    },
+  ],
+];
+
+test("intrinsics, focal lengths and fields of view of an archive are its camera; arrays that are not known are named", async () => {
+  for (const [what, camera, arrays] of archives) {
+    const { data, camera: found, unread } = await readDepth(archive(arrays));
+    assertNear(data, depth, what);
+    assertNear(Object.values(found ?? {}), camera, what, 1e-4);
+    assert.deepEqual(unread ?? [], "odd" in arrays ? ["the array `odd` of the depth file"] : [], what);
+  }
 });
 
 /** A TIFF of 16-bit samples, with other tags. */

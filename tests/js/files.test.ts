@@ -1,11 +1,7 @@
 /** Files of other programs, read through `sim3align/formats`: depth, masks, meshes, and photos with their EXIF data. */
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { mkdtempSync, readFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
 import { test } from "node:test";
-import type { MeshFile, PinholeCamera } from "sim3align";
+import type { MeshFile } from "sim3align";
 import { placeSplats } from "sim3align/conventions";
 import {
   type DepthImage,
@@ -21,7 +17,6 @@ import {
   readMesh,
 } from "sim3align/formats";
 import { glbFrom, meshoptGltf } from "../support/compressed.js";
-import { repository } from "../support/environment.js";
 import { rejectsWith } from "../support/errors.js";
 import { type ExifFields, jpegHead, pngWith, tiff } from "../support/exif.js";
 import { cocoRle, fixture, gltfJson, npy, obj, png } from "../support/files.js";
@@ -30,47 +25,6 @@ import { mesh } from "../support/scene.js";
 const relative = { depthKind: "affine-invariant-disparity" } as const;
 type Unit = DepthImage["unit"];
 const unitOf = (metres: number | null, source: string, isAssumed = false): Unit => ({ metres, source, isAssumed });
-
-/** The content of a file, or its error. */
-interface Expected {
-  data: (number | null)[];
-  width: number;
-  height: number;
-  unit: Unit;
-  camera?: PinholeCamera;
-  /** Of angles, whose functions differ in their last bits. */
-  cameraTolerance?: number;
-  options?: ReadDepthOptions;
-  error?: { code: string; argument: string };
-}
-
-const python = process.env.SIM3ALIGN_DEPTH_FILES ?? "";
-const skip = python === "" && "No Python with the packages of scripts/bench/depth-files/requirements.txt.";
-
-test("depth maps that numpy, OpenCV, OpenEXR and tifffile write now: values, mask, camera and unit", {
-  skip,
-}, async () => {
-  const folder = mkdtempSync(join(tmpdir(), "sim3align-depth-"));
-  execFileSync(python, [join(repository, "tests", "fixtures", "make_depth_files.py"), folder]);
-  const all = JSON.parse(readFileSync(join(folder, "expected.json"), "utf8")) as Record<string, Expected>;
-  assert.ok(Object.keys(all).length > 25);
-  for (const [name, expected] of Object.entries(all)) {
-    const reading = readDepth(new Uint8Array(readFileSync(join(folder, name))), expected.options);
-    if (expected.error !== undefined) {
-      await assert.rejects(reading, expected.error, name);
-      continue;
-    }
-    const { data, width, height, unit, camera } = await reading;
-    assert.deepEqual([width, height, unit], [expected.width, expected.height, expected.unit], name);
-    const values = Float32Array.from(expected.data, (z) => z ?? Number.NaN);
-    assert.deepEqual(data, values, name);
-    for (const [key, value] of Object.entries(expected.camera ?? {})) {
-      const found = camera?.[key as keyof PinholeCamera] ?? Number.NaN;
-      const isNear = Math.abs(found / value - 1) <= (expected.cameraTolerance ?? 0);
-      assert.ok(isNear, `${name}: ${key} ${found}, not ${value}`);
-    }
-  }
-});
 
 test("kinds of depth: what their values mean", async () => {
   const file = npy(Float32Array.of(0, -2, Number.NaN, 0.5, Number.POSITIVE_INFINITY, 3), 2, 3);

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { createAligner } from "sim3align";
 import { readMask } from "sim3align/formats";
 import { codesOf } from "../support/errors.js";
-import { cocoRle, png } from "../support/files.js";
+import { fixture } from "../support/files.js";
 import { input, truth, view } from "../support/scene.js";
 
 const { width, height } = { width: 40, height: 30 };
@@ -15,73 +15,13 @@ const expected = Uint8Array.from({ length: width * height }, (_, i) => {
   const [x, y] = [(i % width) + 0.5, Math.floor(i / width) + 0.5];
   return x > left && x < right && y > top && y < bottom ? 1 : 0;
 });
-const rle = cocoRle(expected, width, height);
-const images = [{ id: 7, width, height, file_name: "a.png" }];
-const annotation = (id: number, segmentation: unknown = [box]) => ({ id, image_id: 7, category_id: 1, segmentation });
-const labelme = (shapes: object[], more = {}) => ({
-  shapes,
-  imageHeight: height,
-  imageWidth: width,
-  version: "5",
-  ...more,
-});
+const labelme = (shapes: object[], more = {}) => ({ shapes, imageHeight: height, imageWidth: width, ...more });
 const polygon = { label: "mug", points: corners, shape_type: "polygon", group_id: null };
-const png64 = Buffer.from(png(new Uint8Array(18 * 15).fill(1), 18, 15)).toString("base64");
 
-const layouts: [what: string, json: object, index?: number][] = [
-  ["COCO RLE", rle],
-  ["COCO file", { images, annotations: [annotation(1)], categories: [{ id: 1, name: "mug" }] }],
-  ["COCO file, the second", { images, annotations: [annotation(1, [[0, 0, 9, 0, 9, 9]]), annotation(2)] }, 1],
-  ["COCO annotation with run lengths", annotation(1, rle)],
-  ["SAM's list", [{ segmentation: rle, area: 3, bbox: [0, 0, 1, 1], predicted_iou: 0.9, stability_score: 1 }]],
-  ["polygons", [box]],
-  ["corners", corners],
-  ["LabelMe", labelme([polygon])],
-  ["LabelMe, a rectangle", labelme([{ ...polygon, points: [corners[0], corners[2]], shape_type: "rectangle" }])],
-  [
-    "LabelMe, a mask",
-    labelme([
-      {
-        ...polygon,
-        points: [
-          [8, 5],
-          [25, 19],
-        ],
-        shape_type: "mask",
-        mask: png64,
-      },
-    ]),
-  ],
-  [
-    "VGG Image Annotator",
-    {
-      "a.png1": {
-        filename: "a.png",
-        size: 1,
-        file_attributes: {},
-        regions: [
-          {
-            shape_attributes: { name: "rect", x: left, y: top, width: right - left, height: bottom - top },
-            region_attributes: {},
-          },
-        ],
-      },
-    },
-  ],
-  [
-    "Supervisely",
-    {
-      size: { height, width },
-      tags: [],
-      objects: [{ classTitle: "mug", geometryType: "polygon", points: { exterior: corners, interior: [] } }],
-    },
-  ],
-  [
-    "Datumaro, a polygon",
-    { items: [{ image: { size: [height, width] }, annotations: [{ type: "polygon", points: box }] }] },
-  ],
-  ["ISAT", { info: { width, height }, objects: [{ category: "mug", segmentation: corners, area: 1 }] }],
-];
+/** What it is, the content of the file, and the index of the mask in it. */
+const layouts: [what: string, json: object, index?: number][] = JSON.parse(
+  Buffer.from(fixture("masks.json")).toString("utf8"),
+);
 
 test("masks of every layout are the same mask", async () => {
   for (const [what, json, index] of layouts) {

@@ -64,12 +64,6 @@ fn polygons_with_notches_are_cut_within_their_outline() {
             assert!(areas.iter().all(|own| *own >= 0.0) && areas.iter().sum::<f64>() == area, "{areas:?}\n{file}");
         }
     }
-    // Too many corners are a fan, at once.
-    let spiral = |i: u32| libm::sincos(f64::from(i) * 0.3);
-    let vertices: String =
-        (0..60_000).map(|i| format!("v {} {} 0\n", spiral(i).0 * f64::from(i), spiral(i).1)).collect();
-    let face: String = (1..=60_000).map(|i| format!(" {i}")).collect();
-    assert_eq!(read(format!("{vertices}f{face}\n")).unwrap().triangles().len(), 59_998);
 }
 
 #[wasm_bindgen_test]

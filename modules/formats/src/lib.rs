@@ -13,136 +13,9 @@ use sim3align_formats::mesh::{
 use sim3align_formats::photo::{read_exif as exif_from_bytes, read_photo, read_stored_photo};
 use wasm_bindgen::prelude::*;
 
-#[wasm_bindgen(typescript_custom_section)]
-const TYPES: &str = r#"
-/** Bytes of a file. */
-export type FileBytes = Uint8Array | ArrayBuffer;
-
-export interface ReadMeshOptions {
-  /** The format; told from the content by default. */
-  format?: "glb" | "gltf" | "obj" | "ply" | "stl";
-  /** The files that a glTF, OBJ or PLY file refers to, by the names in it: see `externalResources`. */
-  resources?: Record<string, FileBytes>;
-  /** Whether to read the colours; `true` by default. */
-  colors?: boolean;
-  /** What the vertex colours of a glTF file are; by default, bytes are sRGB-encoded and others mostly linear. */
-  colorSpace?: "srgb" | "linear";
-  /**
-   * Decodes a texture in a format that is neither PNG nor JPEG, such as KTX2: sRGB-encoded RGB pixels, row by row from the top left;
-   * `undefined` if it cannot.
-   */
-  decodeImage?: (bytes: Uint8Array) => { data: Uint8Array; width: number; height: number } | undefined;
-}
-
-/** A mesh that was read. */
-export interface MeshArrays {
-  /** x, y, z per vertex, in the file's unit and axes, relative to `origin`. */
-  positions: Float32Array;
-  /**
-   * What was subtracted from the coordinates of the file: x, y, z of its centre, for coordinates that are too large for 32 bits,
-   * such as those of a map; otherwise missing.
-   */
-  origin?: [number, number, number];
-  /** How many copies of one mesh the file places, if it has no other; otherwise missing. */
-  copies?: number;
-  /** Three vertex indices per triangle. */
-  indices: Uint32Array;
-  /** The colours of the surface, if the file has any. */
-  samples?: ColorSamples;
-  /** Content of the file that its reader does not know; missing if there is nothing. */
-  unread?: string[];
-  /** Why the colours of the file can't be read. */
-  warnings: string[];
-}
-
-/** Colours of a surface, at points spread evenly over it. */
-export interface ColorSamples {
-  /** Interleaved x, y, z per point, in the frame of the mesh. */
-  positions: Float32Array;
-  /** The unit normal of the surface at each point, outward: interleaved x, y, z. */
-  normals: Float32Array;
-  /** Red, green and blue per point, sRGB-encoded. */
-  colors: Uint8Array;
-  /** The same if the textures were stored upside down, with which `align` compares a photo that contradicts `colors`. */
-  flippedColors?: Uint8Array | undefined;
-}
-
-/** The files that a mesh file refers to, by the names in it. */
-export interface ExternalResources {
-  /** The buffers of a `.gltf`, without which it cannot be read. */
-  shape: string[];
-  /** Textures and material libraries, without which it has no colours. */
-  colors: string[];
-}
-
-/** A photo that was read; `width` and `height` in pixels. */
-export interface PhotoImage {
-  /** Red, green and blue per pixel, row by row, sRGB-encoded. */
-  data: Uint8Array;
-  width: number;
-  height: number;
-}
-
-export interface ReadDepthOptions {
-  /** Metres per unit, above 0. By default, whole numbers are millimetres (0.001) and floats are metres. */
-  depthScale?: number;
-  /** Metres per unit of whole numbers only, where there is no `depthScale`: what a camera file says. */
-  integerDepthScale?: number;
-  /** What the values are; `"metric"` by default. */
-  depthKind?: string;
-}
-
-/** A depth map that was read; `width` and `height` in pixels. */
-export interface DepthImage {
-  /** Row by row: metres along the optical axis, unless `depthKind` says otherwise. */
-  data: Float32Array;
-  width: number;
-  height: number;
-  /** The unit of the values in the file; `metres` is null without one. */
-  unit: { metres: number | null; source: string; isAssumed: boolean };
-  /** The camera in the file, in pixels. */
-  camera?: { fx: number; fy: number; cx: number; cy: number };
-  /** Content of the file that its reader does not know; missing if there is nothing. */
-  unread?: string[];
-}
-
-/** The camera by the EXIF data of a photo; properties that they do not state are missing. */
-export interface Exif {
-  /** Focal length with the same diagonal field of view on a frame of 36 × 24 mm, in mm: `FocalLengthIn35mmFilm`. */
-  focalLength35mm?: number;
-  /** Focal length of the lens, in mm. */
-  focalLengthMm?: number;
-  /** Width of the sensor as far as the original image shows it, in mm. */
-  sensorWidthMm?: number;
-  /** How many times the camera enlarged the image. */
-  digitalZoom?: number;
-  make?: string;
-  model?: string;
-  /** 1 to 8; from 5, the stored image is viewed with its sides exchanged. 1 if the data state none. */
-  orientation: number;
-  /** Width of the original image as stored, in pixels. */
-  width?: number;
-  /** Height of the original image as stored, in pixels. */
-  height?: number;
-}
-
-/** A mask that was read; `width` and `height` in pixels. */
-export interface MaskImage {
-  /** Row by row; 1 is the object. */
-  data: Uint8Array;
-  width: number;
-  height: number;
-  /** Which values of the file are the object: `values of 127.5 or more, of 0 to 255`. */
-  reading: string;
-}
-"#;
-
 /// Reads GLB, glTF, OBJ, PLY or STL: all parts merged, node transforms applied, with the colours of the surface.
-#[wasm_bindgen(js_name = readMesh, unchecked_return_type = "MeshArrays")]
-pub fn read_mesh(
-    #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
-    #[wasm_bindgen(unchecked_optional_param_type = "ReadMeshOptions")] options: &JsValue,
-) -> Result<JsValue, JsValue> {
+#[wasm_bindgen(js_name = readMesh, skip_typescript)]
+pub fn read_mesh(bytes: &JsValue, options: &JsValue) -> Result<JsValue, JsValue> {
     let read = || {
         let options = Options::new(options, &["format", "resources", "colors", "colorSpace", "decodeImage"])?;
         let resources = options.get("resources");
@@ -169,10 +42,8 @@ pub fn read_mesh(
 
 /// The files that a mesh file refers to: what `readMesh` needs as `resources`. The libraries of an OBJ refer to files
 /// themselves.
-#[wasm_bindgen(js_name = externalResources, unchecked_return_type = "ExternalResources")]
-pub fn external_resources(
-    #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
-) -> Result<JsValue, JsValue> {
+#[wasm_bindgen(js_name = externalResources, skip_typescript)]
+pub fn external_resources(bytes: &JsValue) -> Result<JsValue, JsValue> {
     let found = to_bytes("mesh", bytes).and_then(|bytes| resources_of(&bytes)).map_err(|error| to_js(&error))?;
     let names = |names: &[String]| names.iter().map(|name| JsValue::from(name.as_str())).collect::<Array>().into();
     Ok(object(&[("shape", names(&found.shape)), ("colors", names(&found.colors))]))
@@ -180,19 +51,16 @@ pub fn external_resources(
 
 /// Reads a PNG or a JPEG as a photo: sRGB colours, turned by the orientation of its EXIF data unless it is wanted as stored;
 /// large ones are reduced.
-#[wasm_bindgen(js_name = readImage, unchecked_return_type = "PhotoImage")]
-pub fn read_image(
-    #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
-    as_stored: Option<bool>,
-) -> Result<JsValue, JsValue> {
+#[wasm_bindgen(js_name = readImage, skip_typescript)]
+pub fn read_image(bytes: &JsValue, as_stored: Option<bool>) -> Result<JsValue, JsValue> {
     let read = if as_stored == Some(true) { read_stored_photo } else { read_photo };
     let photo = to_bytes("image", bytes).and_then(|bytes| read(&bytes)).map_err(|error| to_js(&error))?;
     Ok(image(&photo, Uint8Array::from(photo.data().as_flattened()).into()))
 }
 
 /// Reads the EXIF data of a PNG or a JPEG, or of bytes that begin with their TIFF header; a property is missing where they do not state it.
-#[wasm_bindgen(js_name = readExif, unchecked_return_type = "Exif")]
-pub fn read_exif(#[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue) -> Result<JsValue, JsValue> {
+#[wasm_bindgen(js_name = readExif, skip_typescript)]
+pub fn read_exif(bytes: &JsValue) -> Result<JsValue, JsValue> {
     let exif = to_bytes("image", bytes).and_then(|bytes| exif_from_bytes(&bytes)).map_err(|error| to_js(&error))?;
     let numbers = [
         ("focalLength35mm", exif.focal_length_35mm),
@@ -210,11 +78,8 @@ pub fn read_exif(#[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsV
 }
 
 /// Reads a grey PNG or a `.npy` array as depth.
-#[wasm_bindgen(js_name = readDepth, unchecked_return_type = "DepthImage")]
-pub fn read_depth(
-    #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
-    #[wasm_bindgen(unchecked_optional_param_type = "ReadDepthOptions")] options: &JsValue,
-) -> Result<JsValue, JsValue> {
+#[wasm_bindgen(js_name = readDepth, skip_typescript)]
+pub fn read_depth(bytes: &JsValue, options: &JsValue) -> Result<JsValue, JsValue> {
     let read = || {
         let (options, kind) = depth_options(options)?;
         read_depth_image(&to_bytes("depth", bytes)?, &options, kind)
@@ -223,8 +88,8 @@ pub fn read_depth(
 }
 
 /// Reads a PNG, a JPEG or a `.npy` array as a mask.
-#[wasm_bindgen(js_name = readMask, unchecked_return_type = "MaskImage")]
-pub fn read_mask(#[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue) -> Result<JsValue, JsValue> {
+#[wasm_bindgen(js_name = readMask, skip_typescript)]
+pub fn read_mask(bytes: &JsValue) -> Result<JsValue, JsValue> {
     let mask = to_bytes("mask", bytes).and_then(|bytes| mask_from_bytes(&bytes)).map_err(|error| to_js(&error))?;
     let object = image(&mask.object, Uint8Array::from(mask.object.data()).into());
     set(&object, "reading", mask.reading.into());

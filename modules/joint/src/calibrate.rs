@@ -1,20 +1,18 @@
 //! Calibrations of views, in steps.
 
-use core::cell::RefCell;
 use std::rc::Rc;
 
-use js_sys::{Array, Float32Array, Function, Object, Reflect};
+use js_sys::{Array, Float32Array, Function};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use sim3align::bindings::answer::answer;
-use sim3align::bindings::answer::to_js;
 use sim3align::bindings::host::{JsHost, now_ms};
-use sim3align::bindings::object::{get, to_u8s, wrong_type};
+use sim3align::bindings::object::{get, to_u8s};
 use sim3align::bindings::{input, mesh, options};
 use sim3align::calibrate::frames::calibrate_views;
 use sim3align::calibrate::{Calibrated, Object as CalibratedObject, calibrate};
-use sim3align::error::{Error, Result};
+use sim3align::error::Result;
 use sim3align::evidence::observation::check_mask_size;
 use sim3align::geometry::image::{Image, Mask};
 use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
@@ -22,11 +20,8 @@ use sim3align::precise::options::AlignOptions;
 use sim3align::scheduler::{Scheduler, Task};
 use sim3align::views::ViewsOptions;
 
-use super::views::world_from_camera;
-
-/// A running calibration.
-#[wasm_bindgen(skip_typescript)]
-pub struct CalibrateTask(RefCell<Task<'static, Calibrated>>);
+use crate::task::{Answer, JointTask, items, object, of};
+use crate::views::world_from_camera;
 
 /// An object that owns its parts.
 struct OwnedObject {
@@ -39,14 +34,11 @@ struct OwnedObject {
 /// Begins to calibrate a view: `{ depth, depthScale?, width, height, camera, depthKind?, focalDeviation?, objects: [{ mask, maskWidth?,
 /// maskHeight?, resizeMask?, others?, mesh, options }] }`.
 #[wasm_bindgen(js_name = beginCalibrate, skip_typescript)]
-pub fn begin_calibrate(input: &JsValue, on_progress: Option<Function>) -> core::result::Result<CalibrateTask, JsValue> {
+pub fn begin_calibrate(input: &JsValue, on_progress: Option<Function>) -> core::result::Result<JointTask, JsValue> {
     let begin = || {
         let view = input::raw_view(input)?;
         let size = [view.values.width(), view.values.height()];
-        let objects = get(input, "objects").filter(Array::is_array);
-        let objects =
-            objects.ok_or_else(|| wrong_type("objects", &JsValue::UNDEFINED, "an array", "Pass the objects."))?;
-        let objects = usable(Array::from(&objects).iter().map(|object| owned(&object, size)))?;
+        let objects = usable(items(input, "objects")?.iter().map(|object| owned(&object, size)))?;
         let mut host = JsHost::new(on_progress);
         Ok(Task::new(Scheduler::new(now_ms, None), move |scheduler| async move {
             let borrowed: Vec<CalibratedObject<'_>> = objects
@@ -61,7 +53,7 @@ pub fn begin_calibrate(input: &JsValue, on_progress: Option<Function>) -> core::
             calibrate(&view, &borrowed, &mut host, &scheduler).await
         }))
     };
-    begin().map(|task| CalibrateTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))
+    JointTask::new(begin(), |view| calibrated(&view))
 }
 
 /// The objects that can be used: the error of one is reported where it is aligned, unless all fail.
@@ -86,25 +78,11 @@ fn owned(object: &JsValue, [width, height]: [usize; 2]) -> Result<OwnedObject> {
     check_mask_size([width, height], &mask)?;
     let others =
         get(object, "others").map(|others| Image::new("occluders", width, height, to_u8s(&others, "occluders")?));
-    let options = options::precise(&get(object, "options").unwrap_or(JsValue::UNDEFINED))?;
+    let options = options::precise(&of(object, "options"))?;
     let mesh = mesh::mesh_of(object)?;
     mesh.check()?;
     Ok(OwnedObject { mask, others: others.transpose()?, mesh, options })
 }
-
-#[wasm_bindgen]
-impl CalibrateTask {
-    /// Runs for about `slice_ms` milliseconds. Returns `{ depth, calibration }` when finished, otherwise `undefined`.
-    #[wasm_bindgen(skip_typescript)]
-    pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
-        let done = self.0.borrow_mut().step(now_ms() + slice_ms).map_err(|error| to_js(&error))?;
-        done.map_or(Ok(JsValue::UNDEFINED), |calibrated| result(&calibrated))
-    }
-}
-
-/// A running calibration of several views.
-#[wasm_bindgen(skip_typescript)]
-pub struct CalibrateViewsTask(RefCell<Task<'static, Vec<Calibrated>>>);
 
 /// Begins to calibrate several views of an object: `{ mesh, options, views: [{ depth, depthScale?, width, height, camera, depthKind?,
 /// focalDeviation?, mask, cameraToWorld? }] }`.
@@ -112,46 +90,28 @@ pub struct CalibrateViewsTask(RefCell<Task<'static, Vec<Calibrated>>>);
 pub fn begin_calibrate_views(
     input: &JsValue,
     on_progress: Option<Function>,
-) -> core::result::Result<CalibrateViewsTask, JsValue> {
+) -> core::result::Result<JointTask, JsValue> {
     let begin = || {
-        let options: ViewsOptions =
-            options::options(&get(input, "options").unwrap_or(JsValue::UNDEFINED), &options::OF_LONG_CALLS, |_| None)?;
-        let views = get(input, "views").filter(Array::is_array);
-        let views = views.ok_or_else(|| wrong_type("views", &JsValue::UNDEFINED, "an array", "Pass the views."))?;
+        let options: ViewsOptions = options::options(&of(input, "options"), &options::OF_LONG_CALLS, |_| None)?;
         let frame = |(k, value): (usize, JsValue)| {
             let read = || input::raw_frame(&value, world_from_camera(&value)?);
             read().map_err(|error| error.in_view(k))
         };
-        let frames = Array::from(&views).iter().enumerate().map(frame).collect::<Result<Vec<_>>>()?;
+        let frames = items(input, "views")?.iter().enumerate().map(frame).collect::<Result<Vec<_>>>()?;
         let mesh = mesh::mesh_of(input)?;
         let mut host = JsHost::new(on_progress);
         Ok(Task::new(Scheduler::new(now_ms, None), move |scheduler| async move {
             calibrate_views(&frames, &mesh, &options.of_one_view(), &mut host, &scheduler).await
         }))
     };
-    begin().map(|task| CalibrateViewsTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))
-}
-
-#[wasm_bindgen]
-impl CalibrateViewsTask {
-    /// Runs for about `slice_ms` milliseconds. Returns an array of `{ depth, calibration }` when finished, otherwise
-    /// `undefined`.
-    #[wasm_bindgen(skip_typescript)]
-    pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
-        let done = self.0.borrow_mut().step(now_ms() + slice_ms).map_err(|error| to_js(&error))?;
-        let Some(views) = done else { return Ok(JsValue::UNDEFINED) };
-        let views: core::result::Result<Array, JsValue> = views.iter().map(result).collect();
+    JointTask::new(begin(), |views| {
+        let views: core::result::Result<Array, JsValue> = views.iter().map(calibrated).collect();
         views.map(Into::into)
-    }
+    })
 }
 
 /// `{ depth, calibration }`.
-fn result(Calibrated { depth, calibration, .. }: &Calibrated) -> core::result::Result<JsValue, JsValue> {
-    let result = Object::new();
-    let depth: JsValue = Float32Array::from(depth.data()).into();
-    for (name, value) in [("depth", depth), ("calibration", answer(Ok(calibration))?)] {
-        // Setting a property of a new object cannot fail.
-        let _ = Reflect::set(&result, &name.into(), &value);
-    }
-    Ok(result.into())
+fn calibrated(Calibrated { depth, calibration, .. }: &Calibrated) -> Answer {
+    let depth = Float32Array::from(depth.data()).into();
+    Ok(object([("depth", depth), ("calibration", answer(Ok(calibration))?)]))
 }

@@ -2,8 +2,8 @@
 //! its arguments, calls the crate `sim3align`, and returns a plain object.
 
 pub mod calibrate;
-pub mod helper;
 pub mod scene;
+pub mod task;
 pub mod track;
 pub mod views;
 

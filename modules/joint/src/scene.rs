@@ -1,11 +1,10 @@
 //! Scenes: the alignment of one object, and what follows from those of all. Plans and placements are bytes for JavaScript,
 //! which only hands them on, so that objects can be aligned by different workers.
 
-use core::cell::RefCell;
 use core::ops::ControlFlow;
 
 use glam::DVec3;
-use js_sys::{Array, Function, Object, Reflect, Uint8Array};
+use js_sys::{Array, Function, Uint8Array};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
@@ -14,8 +13,8 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use sim3align::bindings::answer::answer;
 use sim3align::bindings::answer::to_js;
 use sim3align::bindings::helpers::{JsHelpers, scheduler};
-use sim3align::bindings::host::{JsHost, now_ms};
-use sim3align::bindings::object::{get, required_number, to_numbers, to_u8s, wrong_type};
+use sim3align::bindings::host::JsHost;
+use sim3align::bindings::object::{required_number, to_numbers, to_u8s, wrong_type};
 use sim3align::bindings::{input, mesh, options};
 use sim3align::error::{Error, ErrorCode, Result};
 use sim3align::geometry::image::{Image, Mask};
@@ -30,11 +29,7 @@ use sim3align::scene::planes::union_of;
 use sim3align::scene::task::{helper, place};
 use sim3align::scheduler::Task;
 
-use crate::helper::JointHelper;
-
-/// A running alignment of one object of a scene.
-#[wasm_bindgen(skip_typescript)]
-pub struct PlaceTask(RefCell<Task<'static, (Placement, Option<Alignment>)>>);
+use crate::task::{Answer, JointHelper, JointTask, object, of};
 
 /// Begins to align an object of a scene in a round of its `plan`, which is not there in the first one; `index` is its number.
 #[wasm_bindgen(js_name = beginPlace, skip_typescript)]
@@ -43,7 +38,7 @@ pub fn begin_place(
     options: &JsValue,
     on_progress: Option<Function>,
     helpers: Option<JsHelpers>,
-) -> core::result::Result<PlaceTask, JsValue> {
+) -> core::result::Result<JointTask, JsValue> {
     let begin = || {
         let options = options::precise(options)?;
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
@@ -53,19 +48,13 @@ pub fn begin_place(
             place(&observation, &mesh, options, plan.warm_start(index)?, &mut host, &scheduler).await
         }))
     };
-    begin().map(|task| PlaceTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))
+    JointTask::new(begin(), placed)
 }
 
-#[wasm_bindgen]
-impl PlaceTask {
-    /// Runs for about `slice_ms` milliseconds. Returns `{ placement, alignment? }` when finished, otherwise `undefined`.
-    #[wasm_bindgen(skip_typescript)]
-    pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
-        let done = self.0.borrow_mut().step(now_ms() + slice_ms).map_err(|error| to_js(&error))?;
-        let Some((placement, alignment)) = done else { return Ok(JsValue::UNDEFINED) };
-        let alignment = alignment.map_or(Ok(JsValue::UNDEFINED), |alignment| answer(Ok(alignment)))?;
-        Ok(object([("placement", packed(&placement)?), ("alignment", alignment)]))
-    }
+/// `{ placement, alignment? }`.
+fn placed((placement, alignment): (Placement, Option<Alignment>)) -> Answer {
+    let alignment = alignment.map_or(Ok(JsValue::UNDEFINED), |alignment| answer(Ok(alignment)))?;
+    Ok(object([("placement", packed(&placement)?), ("alignment", alignment)]))
 }
 
 /// Prepares a helper of the alignment that [`begin_place`] begins with the same input and options.
@@ -89,7 +78,7 @@ fn planned(input: &JsValue) -> Result<(Plan, usize)> {
 /// What follows from the placements of a round: `({ depth, …, camera, masks, support, seed, snap }, plan, placements)` →
 /// `{ plan }` of another round, or `{ objects, support }`. A placement is `null` for an object that could not be aligned.
 #[wasm_bindgen(js_name = planScene, skip_typescript)]
-pub fn plan_scene(scene: &JsValue, plan: &JsValue, placements: &Array) -> core::result::Result<JsValue, JsValue> {
+pub fn plan_scene(scene: &JsValue, plan: &JsValue, placements: &Array) -> Answer {
     let run = || {
         let plan: Plan = unpacked(plan)?.unwrap_or_default();
         let placements = placements.iter().map(|placement| unpacked(&placement)).collect::<Result<_>>()?;
@@ -113,7 +102,7 @@ fn view(scene: &JsValue) -> Result<View> {
 }
 
 /// As bytes, without loss.
-fn packed(value: &impl Serialize) -> core::result::Result<JsValue, JsValue> {
+fn packed(value: &impl Serialize) -> Answer {
     let bytes = postcard::to_allocvec(value).map_err(|_| to_js(&missing()))?;
     Ok(Uint8Array::from(bytes.as_slice()).into())
 }
@@ -124,19 +113,6 @@ fn unpacked<T: DeserializeOwned>(bytes: &JsValue) -> Result<Option<T>> {
         return Ok(None);
     }
     postcard::from_bytes(&to_u8s(bytes, "placement")?).map(Some).map_err(|_| missing())
-}
-
-fn of(object: &JsValue, key: &str) -> JsValue {
-    get(object, key).unwrap_or(JsValue::UNDEFINED)
-}
-
-fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsValue {
-    let object = Object::new();
-    for (name, value) in fields {
-        // Setting a property of a new object cannot fail.
-        let _ = Reflect::set(&object, &name.into(), &value);
-    }
-    object.into()
 }
 
 /// `"auto"`, `{ normal, d }` or nothing.

@@ -3,12 +3,11 @@
 use core::cell::{RefCell, RefMut};
 use std::rc::Rc;
 
-use js_sys::{Function, Reflect};
+use js_sys::Function;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use sim3align::bindings::answer::answer;
-use sim3align::bindings::answer::to_js;
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::wrong_type;
 use sim3align::bindings::transform::similarity;
@@ -23,6 +22,8 @@ use sim3align::progress::Silent;
 use sim3align::scheduler::{Scheduler, Task};
 use sim3align::track::report::TrackedFrame;
 use sim3align::track::tracker::Tracker;
+
+use crate::task::{Answer, JointTask, set};
 
 /// A tracker, and the calibrations of its frames.
 struct Tracked {
@@ -39,7 +40,7 @@ thread_local! {
 
 /// Creates a tracker under this id; see `Aligner.track` in the TypeScript package.
 #[wasm_bindgen(js_name = openTracker, skip_typescript)]
-pub fn open_tracker(id: u32, input: &JsValue, options: &JsValue) -> core::result::Result<JsValue, JsValue> {
+pub fn open_tracker(id: u32, input: &JsValue, options: &JsValue) -> Answer {
     let open = || {
         let options = options::options(options, &options::OF_CALLS, |_| None)?;
         let mesh = mesh::mesh_of(input)?;
@@ -51,10 +52,6 @@ pub fn open_tracker(id: u32, input: &JsValue, options: &JsValue) -> core::result
     answer(open())
 }
 
-/// A frame that is being tracked.
-#[wasm_bindgen(skip_typescript)]
-pub struct FrameTask(RefCell<Task<'static, (TrackedFrame, Option<DepthCalibration>)>>);
-
 /// Begins to track the next frame; see `Tracker.next` in the TypeScript package. A task that is dropped before its end leaves the
 /// tracker as it was.
 #[expect(clippy::await_holding_refcell_ref, reason = "a tracker is borrowed for as long as it tracks a frame")]
@@ -63,7 +60,7 @@ pub fn begin_track_frame(
     id: u32,
     frame: &JsValue,
     on_progress: Option<Function>,
-) -> core::result::Result<FrameTask, JsValue> {
+) -> core::result::Result<JointTask, JsValue> {
     let begin = || {
         let (tracked, mut host, scheduler) = (tracker(id)?, JsHost::new(on_progress), Scheduler::new(now_ms, None));
         if !input::is_raw(frame) {
@@ -86,28 +83,21 @@ pub fn begin_track_frame(
             Ok((found, Some(calibration)))
         }))
     };
-    begin().map(|task| FrameTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))
+    JointTask::new(begin(), found)
 }
 
-#[wasm_bindgen]
-impl FrameTask {
-    /// Runs for about `slice_ms` milliseconds. Returns the pose when finished, otherwise `undefined`.
-    #[wasm_bindgen(skip_typescript)]
-    pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
-        let done = self.0.borrow_mut().step(now_ms() + slice_ms).map_err(|error| to_js(&error))?;
-        let Some((found, calibration)) = done else { return Ok(JsValue::UNDEFINED) };
-        let result = answer(Ok(found))?;
-        if let Some(calibration) = calibration {
-            // Setting a property of a new object cannot fail.
-            let _ = Reflect::set(&result, &"depthCalibration".into(), &answer(Ok(calibration))?);
-        }
-        Ok(result)
+/// The pose, with the calibration of its depth map.
+fn found((frame, calibration): (TrackedFrame, Option<DepthCalibration>)) -> Answer {
+    let result = answer(Ok(frame))?;
+    if let Some(calibration) = calibration {
+        set(&result, "depthCalibration", &answer(Ok(calibration))?);
     }
+    Ok(result)
 }
 
 /// Corrects the pose of a frame; see `Tracker.correct` in the TypeScript package.
 #[wasm_bindgen(js_name = correctTrack, skip_typescript)]
-pub fn correct_track(id: u32, pose: &JsValue, frame: &JsValue) -> core::result::Result<JsValue, JsValue> {
+pub fn correct_track(id: u32, pose: &JsValue, frame: &JsValue) -> Answer {
     let correct = || {
         let tracker = tracker(id)?;
         let pose = similarity(pose, "pose")?;

@@ -1,33 +1,25 @@
 //! Alignments of several views, in steps.
 
-use core::cell::RefCell;
-
-use js_sys::{Array, Function};
+use js_sys::Function;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
-use sim3align::bindings::answer::step_answer;
+use sim3align::bindings::answer::answer;
 use sim3align::bindings::answer::to_js;
 use sim3align::bindings::helpers::{JsHelpers, scheduler};
-use sim3align::bindings::host::{JsHost, now_ms};
-use sim3align::bindings::object::{get, wrong_type};
+use sim3align::bindings::host::JsHost;
+use sim3align::bindings::object::get;
 use sim3align::bindings::transform::similarity;
 use sim3align::bindings::{input, mesh, options};
 use sim3align::error::{Error, ErrorCode, Result};
 use sim3align::geometry::similarity::Similarity;
 use sim3align::number::number;
-use sim3align::scheduler::Task;
-use sim3align::views::report::ViewsAlignment;
 use sim3align::views::{View, align_views_task, views_helper};
 
-use crate::helper::JointHelper;
+use crate::task::{JointHelper, JointTask, items};
 
 /// Largest deviation of the scale of a camera pose from 1.
 const RIGID: f64 = 1e-3;
-
-/// A running alignment of several views.
-#[wasm_bindgen(skip_typescript)]
-pub struct ViewsTask(RefCell<Task<'static, ViewsAlignment>>);
 
 /// Starts an alignment; see `Aligner.alignViews` in the TypeScript package.
 #[wasm_bindgen(js_name = beginAlignViews, skip_typescript)]
@@ -36,13 +28,13 @@ pub fn begin_align_views(
     options: &JsValue,
     on_progress: Option<Function>,
     helpers: Option<JsHelpers>,
-) -> core::result::Result<ViewsTask, JsValue> {
+) -> core::result::Result<JointTask, JsValue> {
     let begin = || {
         let options = options::options(options, &options::OF_LONG_CALLS, |_| None)?;
         let (views, mesh) = (views_of(input)?, mesh::mesh_of(input)?);
         align_views_task(views, mesh, options, JsHost::new(on_progress), scheduler(helpers))
     };
-    begin().map(|task| ViewsTask(RefCell::new(task))).map_err(|error| to_js(&error))
+    JointTask::new(begin(), |alignment| answer(Ok(alignment)))
 }
 
 /// Prepares a helper of the alignment that [`begin_align_views`] starts with the same input and options.
@@ -56,9 +48,7 @@ pub fn begin_help_views(input: &JsValue, options: &JsValue) -> core::result::Res
 }
 
 fn views_of(input: &JsValue) -> Result<Vec<View>> {
-    let views = get(input, "views").filter(Array::is_array);
-    let views = views.ok_or_else(|| wrong_type("views", &JsValue::UNDEFINED, "an array", "Pass the views."))?;
-    Array::from(&views).iter().enumerate().map(|(k, value)| view(&value, k)).collect()
+    items(input, "views")?.iter().enumerate().map(|(k, value)| view(&value, k)).collect()
 }
 
 /// A view, whose errors name it.
@@ -82,13 +72,4 @@ pub fn world_from_camera(value: &JsValue) -> Result<Option<Similarity>> {
         ));
     }
     Ok(pose)
-}
-
-#[wasm_bindgen]
-impl ViewsTask {
-    /// Runs for about `slice_ms` milliseconds. Returns the alignment when finished, otherwise `undefined`.
-    #[wasm_bindgen(skip_typescript)]
-    pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
-        step_answer(self.0.borrow_mut().step(now_ms() + slice_ms))
-    }
 }

@@ -1,8 +1,8 @@
 /** The focal length of a photo in pixels, from its EXIF data. */
 
+import type { Exif } from "../types/files.js";
 import type { ImageSize } from "../values/pixels.js";
 import { finite, positive, record, withoutUndefined } from "../values/validation.js";
-import type { Exif } from "../wasm/formats.js";
 
 /** A focal length from EXIF data. */
 export interface ExifFocal {

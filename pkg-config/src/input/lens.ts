@@ -2,8 +2,8 @@
 import type { ExifFocal } from "../camera/exif-focal.js";
 import type { Pinhole } from "../camera/pinhole.js";
 import type { Warning } from "../generated/types.js";
+import type { Exif } from "../types/files.js";
 import type { ImageSize } from "../values/pixels.js";
-import type { Exif } from "../wasm/formats.js";
 
 /**
  * The focal length of an image of which nothing is known, relative to its longer side, and the standard deviation of its

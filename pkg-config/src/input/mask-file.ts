@@ -25,47 +25,20 @@ interface Entry {
 /** A layout of JSON. */
 interface Layout {
   name: string;
-  /** Keys of the file and of its masks that are used, or that do not matter. */
-  keys: readonly string[];
+  /** Keys of the file and of its masks that are used, or that do not matter, with spaces between them. */
+  keys: string;
   /** The records of the masks; `undefined` for another layout. */
   find(json: unknown): unknown[] | undefined;
   /** The mask of a record; `undefined` for one that has no area. */
   entry(record: Record<string, unknown>, file: Record<string, unknown>): Entry | undefined;
 }
 
-const ofAnnotations = [
-  ...[
-    "segmentation",
-    "size",
-    "counts",
-    "id",
-    "image_id",
-    "category_id",
-    "category",
-    "bbox",
-    "area",
-    "iscrowd",
-    "score",
-  ],
-  ...["predicted_iou", "point_coords", "stability_score", "crop_box", "label", "class_name", "attributes", "keypoints"],
-  ...[
-    "num_keypoints",
-    "images",
-    "annotations",
-    "categories",
-    "info",
-    "licenses",
-    "ignore",
-    "caption",
-    "bbox_mode",
-    "image",
-  ],
-];
-
 const layouts: readonly Layout[] = [
   {
     name: "COCO (a file, annotations, or a mask), SAM's list of masks",
-    keys: ofAnnotations,
+    keys: `segmentation size counts id image_id category_id category bbox area iscrowd score predicted_iou point_coords
+      stability_score crop_box label class_name attributes keypoints num_keypoints images annotations categories info
+      licenses ignore caption bbox_mode image`,
     find(json) {
       if (isRecord(json) && Array.isArray(json.annotations)) return json.annotations;
       if (isCorners(json)) return [{ segmentation: [json] }];
@@ -88,32 +61,8 @@ const layouts: readonly Layout[] = [
   },
   {
     name: "LabelMe",
-    keys: [
-      ...[
-        "version",
-        "flags",
-        "shapes",
-        "imagePath",
-        "imageData",
-        "imageHeight",
-        "imageWidth",
-        "lineColor",
-        "fillColor",
-      ],
-      ...[
-        "label",
-        "points",
-        "group_id",
-        "description",
-        "shape_type",
-        "mask",
-        "line_color",
-        "fill_color",
-        "score",
-        "difficult",
-      ],
-      ...["attributes", "kie_linking", "text", "cells"],
-    ],
+    keys: `version flags shapes imagePath imageData imageHeight imageWidth lineColor fillColor label points group_id
+      description shape_type mask line_color fill_color score difficult attributes kie_linking text cells`,
     find: (json) => (isRecord(json) && Array.isArray(json.shapes) ? json.shapes : undefined),
     entry({ label, group_id: group, shape_type: type = "polygon", points, mask }, { imageHeight, imageWidth }) {
       const [name, size] = [facts({ label, group, type }), sizeIn(imageHeight, imageWidth)];
@@ -128,19 +77,8 @@ const layouts: readonly Layout[] = [
   },
   {
     name: "VGG Image Annotator",
-    keys: [
-      ...[
-        "filename",
-        "size",
-        "regions",
-        "file_attributes",
-        "shape_attributes",
-        "region_attributes",
-        "base64_img_data",
-        "fileref",
-      ],
-      ...["_via_img_metadata", "_via_settings", "_via_attributes", "_via_data_format_version", "_via_image_id_list"],
-    ],
+    keys: `filename size regions file_attributes shape_attributes region_attributes base64_img_data fileref
+      _via_img_metadata _via_settings _via_attributes _via_data_format_version _via_image_id_list`,
     find(json) {
       const files = isRecord(json)
         ? Object.values(isRecord(json._via_img_metadata) ? json._via_img_metadata : json)
@@ -167,33 +105,8 @@ const layouts: readonly Layout[] = [
   },
   {
     name: "Supervisely, ISAT",
-    keys: [
-      ...[
-        "description",
-        "tags",
-        "size",
-        "objects",
-        "id",
-        "classId",
-        "classTitle",
-        "labelerLogin",
-        "createdAt",
-        "updatedAt",
-      ],
-      ...[
-        "geometryType",
-        "points",
-        "nnCreated",
-        "nnUpdated",
-        "info",
-        "category",
-        "group",
-        "segmentation",
-        "area",
-        "layer",
-      ],
-      ...["bbox", "iscrowd", "note", "bitmap", "shape"],
-    ],
+    keys: `description tags size objects id classId classTitle labelerLogin createdAt updatedAt geometryType points
+      nnCreated nnUpdated info category group segmentation area layer bbox iscrowd note bitmap shape`,
     find: (json) => (isRecord(json) && Array.isArray(json.objects) ? json.objects : undefined),
     entry({ classTitle, category = classTitle, id, group, points, segmentation, bitmap }, { size, info }) {
       const of = isRecord(size) ? size : isRecord(info) ? info : {};
@@ -210,10 +123,8 @@ const layouts: readonly Layout[] = [
   },
   {
     name: "Datumaro",
-    keys: [
-      ...["dm_format_version", "media_type", "infos", "categories", "items", "id", "type", "attributes", "group"],
-      ...["label_id", "rle", "z_order", "points", "object_id", "size"],
-    ],
+    keys: `dm_format_version media_type infos categories items id type attributes group label_id rle z_order points
+      object_id size`,
     find: (json) =>
       isRecord(json) && Array.isArray(json.items)
         ? json.items.flatMap((item) =>
@@ -260,8 +171,9 @@ export async function maskInJson(
   const entry = chosen(argument, entries, index);
   const [first] = records;
   const isFile = first !== undefined && first !== file;
+  const known = new Set(layout.keys.split(/\s+/));
   const unknown = [...(isFile ? Object.keys(file) : []), ...records.flatMap(Object.keys)].filter(
-    (key) => !layout.keys.includes(key) && !isRecord(file[key]),
+    (key) => !known.has(key) && !isRecord(file[key]),
   );
   const unread = [
     ...new Set(unknown.map((key) => `the key \`${key}\` of the mask file`)),

@@ -1,5 +1,5 @@
 /** Decoders of compressed geometry. Callers may bring those of other versions: the objects of their libraries fit as they are. */
-import type { ReadMeshOptions } from "../wasm/formats.js";
+import type { ReadMeshOptions } from "../modules/exports.js";
 
 /** Rewrites a mesh file, and the options of its reader, without the compression of its geometry. */
 export type DecodeGeometry = (bytes: Uint8Array, options: ReadMeshOptions) => [Uint8Array, ReadMeshOptions];

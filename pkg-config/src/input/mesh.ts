@@ -1,14 +1,14 @@
 /** Meshes from arrays or mesh files. */
 
-import type { Formats } from "../modules/exports.js";
+import type { Formats, ReadMeshOptions } from "../modules/exports.js";
 import { WasmModule } from "../modules/module.js";
 import type { FileReaders } from "../modules/readers.js";
+import type { ColorSamples, MeshFromFile } from "../types/files.js";
 import type { MeshFile } from "../types/inputs.js";
 import { failure, invalidArgument, Sim3AlignError } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import type { CoreMesh } from "../values/prepared-mesh.js";
 import { oneOf, part, stringsIn, withoutUndefined, wrongKind } from "../values/validation.js";
-import type { ColorSamples, MeshArrays, ReadMeshOptions } from "../wasm/formats.js";
 import { callReader, fileBytes } from "./bytes.js";
 import { type ColorArray, rgbOf } from "./colors.js";
 import { formatsText } from "./formats.js";
@@ -33,7 +33,7 @@ export async function decodeMesh(
   readers: MeshReaders,
   rename?: (argument: string) => string,
   own: MeshDecoders = {},
-): Promise<MeshArrays> {
+): Promise<MeshFromFile> {
   const { format, colors } = options as { format?: unknown; colors?: unknown };
   if (holdsGaussians(bytes, format)) {
     const withColors = colors === undefined || Boolean(colors);

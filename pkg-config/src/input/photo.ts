@@ -1,11 +1,11 @@
 /** The photo of an input. */
 
 import type { Photo } from "../modules/core-input.js";
+import type { Exif } from "../types/files.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import type { PixelArray } from "../values/pixels.js";
 import { wrongKind } from "../values/validation.js";
-import type { Exif } from "../wasm/formats.js";
 import { type Bytes, beginsLikeImage, callReader, fileBytes, isBytes } from "./bytes.js";
 import { photoOf } from "./colors.js";
 import type { StatedSize } from "./depth.js";

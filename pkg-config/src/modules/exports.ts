@@ -13,11 +13,12 @@ import type {
   TrackedFrame,
   ViewsAlignment,
 } from "../generated/types.js";
-import type { DepthImage } from "../types/inputs.js";
+import type { DecodeImage } from "../input/webp.js";
+import type { Exif, ExternalResources, MaskFromFile, MeshFromFile } from "../types/files.js";
+import type { DepthImage, MeshFile, ReadDepthOptions } from "../types/inputs.js";
 import type { Support } from "../types/scene.js";
 import type { PixelArray } from "../values/pixels.js";
 import type { CoreMesh } from "../values/prepared-mesh.js";
-import type { MeshArrays } from "../wasm/formats.js";
 import type { CoreFrame, CoreInput, CoreView, CoreViews } from "./core-input.js";
 
 /** The modules of the aligner, by their names among the options. */
@@ -101,7 +102,20 @@ export interface Core extends MeshCache {
 }
 
 /** Readers of mesh files, images and NPY. */
-export type Formats = typeof import("../wasm/formats.js");
+export interface Formats {
+  readMesh(bytes: Uint8Array, options: ReadMeshOptions): MeshFromFile;
+  externalResources(bytes: Uint8Array): ExternalResources;
+  readImage(bytes: Uint8Array, asStored: boolean): PixelArray<Uint8Array>;
+  readExif(bytes: Uint8Array): Exif;
+  readDepth(bytes: Uint8Array, options: ReadDepthOptions): DepthImage;
+  readMask(bytes: Uint8Array): MaskFromFile;
+}
+
+/** The options of the reader of mesh files. */
+export interface ReadMeshOptions extends Omit<MeshFile, "bytes"> {
+  colors?: boolean | undefined;
+  decodeImage?: DecodeImage | undefined;
+}
 
 /** The reader of depth maps as depth models write them (NPZ, EXR, TIFF, PFM). */
 export interface DepthFiles {
@@ -110,7 +124,7 @@ export interface DepthFiles {
 
 /** The maker of meshes of 3D Gaussians. */
 export interface Splats {
-  readSplats(bytes: Uint8Array, withColors: boolean): MeshArrays;
+  readSplats(bytes: Uint8Array, withColors: boolean): MeshFromFile;
 }
 
 /** The decoder of WebP. */

@@ -1,8 +1,8 @@
 /** Colours at points of a surface. */
 import { cross, dot, minus } from "../conventions/rotation.js";
 import { rgbOf } from "../input/colors.js";
+import type { ColorSamples } from "../types/files.js";
 import type { Vector3 } from "../values/validation.js";
-import type { ColorSamples } from "../wasm/formats.js";
 
 /** Number of points: as many as those of mesh files. */
 const COUNT = 32_768;

@@ -2,8 +2,8 @@
 
 import type { PixelArray } from "../values/pixels.js";
 import type { PreparedMesh } from "../values/prepared-mesh.js";
-import type { ColorSamples } from "../wasm/formats.js";
 import type { Sim3Like } from "./argument-types.js";
+import type { ColorSamples } from "./files.js";
 import type { BlobLike } from "./platform.js";
 
 /**

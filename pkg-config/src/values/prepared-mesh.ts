@@ -1,5 +1,5 @@
 /** Meshes that are read, validated and decimated once for many calls. */
-import type { ColorSamples } from "../wasm/formats.js";
+import type { ColorSamples } from "../types/files.js";
 import { failure } from "./error.js";
 import { brand, isRecord } from "./kinds.js";
 import { copied } from "./transfer.js";

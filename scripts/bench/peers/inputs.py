@@ -1,4 +1,4 @@
-"""Inputs as files of bare numbers, which `npm run bench:peers` writes from case folders, and clouds of pairs."""
+"""Inputs as files of bare numbers, which `npm run bench` writes from case folders, and clouds of pairs."""
 
 from __future__ import annotations
 
@@ -41,13 +41,10 @@ def read_case(folder: Path) -> Case:
 
 
 def read_cloud(path: Path) -> np.ndarray:
-    """N×3 from a .ply, or from KITTI's .bin: x, y, z, reflectance as f32."""
-    if path.suffix == ".bin":
-        points = np.fromfile(path, np.float32).reshape(-1, 4)[:, :3].astype(np.float64)
-    else:
-        import open3d
+    """N×3 from a .ply."""
+    import open3d
 
-        points = np.asarray(open3d.io.read_point_cloud(str(path)).points)
+    points = np.asarray(open3d.io.read_point_cloud(str(path)).points)
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) == 0:
         raise ValueError(f"{path}: no points")

@@ -7,14 +7,13 @@ Rigid methods keep the scale of the problem, s_init. Global ones:
 - open3d-ransac-scale: the same, and RANSAC estimates the scale too (`with_scaling=True`);
 - open3d-ransac-thinned: open3d-ransac with ICP on one point per voxel, which is faster;
 - open3d-fgr: FPFH, Fast Global Registration (half a voxel), no refinement, as in the tutorial;
-- kiss-matcher: KISS-Matcher with its defaults, no refinement;
-- open3d-fgr-icp, kiss-matcher-icp: these, and the ICP that RANSAC ends with.
+- kiss-matcher: KISS-Matcher with its defaults, no refinement.
 
 Local ones, which start from the centred, unrotated pose, with correspondences up to 3 voxels apart and at most 100
 iterations:
 
 - open3d-icp-point-to-point, open3d-icp-point-to-plane: on all points;
-- open3d-gicp, small-gicp, small-gicp-plane (its point-to-plane ICP): on one point per voxel;
+- open3d-gicp, small-gicp: on one point per voxel;
 - probreg-cpd: Coherent Point Drift with scale, on at most 1000 points of each thinned cloud, drawn at random, for its
   time grows with their product; 10 % outliers, at most 150 iterations.
 """
@@ -45,9 +44,6 @@ class Method:
     run: Callable[[Problem], np.ndarray]
     # The distributions that it needs, the one that gives it its version first.
     packages: tuple[str, ...]
-    is_global: bool = False
-    # Whether it ends where its voxels do.
-    is_coarse: bool = False
 
     def load(self) -> None:
         for package in self.packages:
@@ -117,25 +113,22 @@ def _generalized_icp(problem: Problem) -> np.ndarray:
     ).transformation
 
 
-def _small_gicp(registration_type: str) -> Callable[[Problem], np.ndarray]:
-    def run(problem: Problem) -> np.ndarray:
-        import small_gicp
+def _small_gicp(problem: Problem) -> np.ndarray:
+    import small_gicp
 
-        clouds = [small_gicp.preprocess_points(points, problem.voxel) for points in (problem.target, problem.source)]
-        (target, tree), (source, _) = clouds
-        return small_gicp.align(
-            target,
-            source,
-            tree,
-            registration_type=registration_type,
-            max_correspondence_distance=LOCAL_REACH_VOXELS * problem.voxel,
-            max_iterations=LOCAL_ITERATIONS,
-            # The library's own are for metres of a street: at rest means here a thousandth of a voxel.
-            rotation_epsilon=1e-4,
-            translation_epsilon=1e-3 * problem.voxel,
-        ).T_target_source
-
-    return run
+    clouds = [small_gicp.preprocess_points(points, problem.voxel) for points in (problem.target, problem.source)]
+    (target, tree), (source, _) = clouds
+    return small_gicp.align(
+        target,
+        source,
+        tree,
+        registration_type="GICP",
+        max_correspondence_distance=LOCAL_REACH_VOXELS * problem.voxel,
+        max_iterations=LOCAL_ITERATIONS,
+        # The library's own are for metres of a street: at rest means here a thousandth of a voxel.
+        rotation_epsilon=1e-4,
+        translation_epsilon=1e-3 * problem.voxel,
+    ).T_target_source
 
 
 def _kiss_matcher(problem: Problem) -> np.ndarray:
@@ -156,16 +149,6 @@ def _kiss_matcher(problem: Problem) -> np.ndarray:
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = solution.rotation, np.ravel(solution.translation) / zoom - behind
     return matrix
-
-
-def _refined(method: Callable[[Problem], np.ndarray]) -> Callable[[Problem], np.ndarray]:
-    def run(problem: Problem) -> np.ndarray:
-        from .open3d_stages import Clouds
-
-        coarse = method(problem)
-        return Clouds(problem).refined(coarse)
-
-    return run
 
 
 def _cpd(problem: Problem) -> np.ndarray:
@@ -190,18 +173,15 @@ def _cpd(problem: Problem) -> np.ndarray:
 
 
 METHODS: dict[str, Method] = {
-    "open3d-ransac": Method(_ransac(False), ("open3d",), is_global=True),
-    "open3d-ransac-scale": Method(_ransac(True), ("open3d",), is_global=True),
-    "open3d-ransac-thinned": Method(_ransac(False, thinned=True), ("open3d",), is_global=True, is_coarse=True),
-    "open3d-fgr": Method(_fast_global, ("open3d",), is_global=True, is_coarse=True),
-    "open3d-fgr-icp": Method(_refined(_fast_global), ("open3d",), is_global=True),
-    "kiss-matcher": Method(_kiss_matcher, ("kiss_matcher",), is_global=True, is_coarse=True),
-    "kiss-matcher-icp": Method(_refined(_kiss_matcher), ("kiss_matcher", "open3d"), is_global=True),
+    "open3d-ransac": Method(_ransac(False), ("open3d",)),
+    "open3d-ransac-scale": Method(_ransac(True), ("open3d",)),
+    "open3d-ransac-thinned": Method(_ransac(False, thinned=True), ("open3d",)),
+    "open3d-fgr": Method(_fast_global, ("open3d",)),
+    "kiss-matcher": Method(_kiss_matcher, ("kiss_matcher",)),
     "open3d-icp-point-to-point": Method(_icp(False), ("open3d",)),
     "open3d-icp-point-to-plane": Method(_icp(True), ("open3d",)),
     "open3d-gicp": Method(_generalized_icp, ("open3d",)),
-    "small-gicp": Method(_small_gicp("GICP"), ("small_gicp",)),
-    "small-gicp-plane": Method(_small_gicp("PLANE_ICP"), ("small_gicp",)),
+    "small-gicp": Method(_small_gicp, ("small_gicp",)),
     "probreg-cpd": Method(_cpd, ("probreg", "open3d")),
 }
 
