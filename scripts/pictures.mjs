@@ -1,6 +1,6 @@
 /**
- * `node scripts/pictures.mjs`: the pictures of the samples, of links to the page and of the guides, as the page, the element, the
- * command line and the package draw them. Pictures of samples have the gallery's size at twice the density, those of links the size
+ * `node scripts/pictures.mjs`: the pictures of the samples, of links to the page, of the README and of the guides, as the page, the
+ * element, the command line and the package draw them; with `--render`, Blender renders the first sample before. Pictures of samples have the gallery's size at twice the density, those of links the size
  * of previews.
  */
 import { readFileSync, writeFileSync } from "node:fs";
@@ -12,6 +12,8 @@ import { run } from "./lib/run.mjs";
 import { buildSite } from "./lib/site.mjs";
 import { serve } from "./lib/static-server.mjs";
 import { script } from "./lib/step.mjs";
+import { renderKitchen } from "./pictures/kitchen.mjs";
+import { readmePicture } from "./pictures/readme.mjs";
 
 /** @typedef {import("playwright-core").Page} Page */
 
@@ -68,6 +70,7 @@ const aligned = (page) => page.locator("#status", { hasText: /^Aligned/ }).waitF
 const ofGuide = (name) => at("docs", "pictures", `${name}.webp`);
 
 await script(async () => {
+  if (process.argv.includes("--render")) await renderKitchen("python3");
   await buildSite();
   /** @type {{ id: string, picture: string }[]} */
   const samples = JSON.parse(readFileSync(at("www", "samples", "index.json"), "utf8"));
@@ -84,7 +87,11 @@ await script(async () => {
   try {
     for (const { id, picture } of samples) {
       const page = await opened(id);
-      if (id === samples[0]?.id) await save(page, await shared(page), at("www", "samples", "share.jpg"), [1200, 630]);
+      if (id === samples[0]?.id) {
+        const whole = await shared(page);
+        await save(page, whole, at("www", "samples", "share.jpg"), [1200, 630]);
+        await save(page, await readmePicture(browser, whole), at("docs", "picture.webp"));
+      }
       // Sizes are too small to be read there.
       await page
         .locator("label.check", { hasText: /^Sizes$/ })

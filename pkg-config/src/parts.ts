@@ -15,7 +15,7 @@ export type { MogeOutput } from "./conventions/moge.js";
 export type { OrientedBoundingBox } from "./conventions/oriented-bounding-box.js";
 export type { ImagesAndCamera, PixelBox } from "./conventions/resize.js";
 export type { Nested, Sam3dLayout, Sam3dVertices } from "./conventions/sam3d.js";
-export type { SceneGlbObject, SceneGlbOptions } from "./conventions/scene-glb.js";
+export type { SceneGlbObject, SceneGlbOptions, TimedPose } from "./conventions/scene-glb.js";
 export type { StretchLike } from "./conventions/stretch.js";
 export type { MaskChoice, TensorLike } from "./conventions/tensor.js";
 export type { Upright, UprightOptions } from "./conventions/upright.js";

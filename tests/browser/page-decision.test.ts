@@ -94,7 +94,7 @@ test("objects are hidden, locked, renamed and removed", "#sample=desk", async (o
   assert.ok(!page.url().includes("sample="), "a link to another scene");
 });
 
-test("what an object stands on is said, and the scene is saved as one GLB", "", async (opened, page) => {
+test("what an object stands on is said, and the scene is saved as one GLB", "#sample=table", async (opened, page) => {
   await page.click("#align-all");
   await page.locator(".contact", { hasText: /^Stands on the ground/ }).waitFor(PATIENCE);
   const masks = JSON.parse(`${(await opened.saved("COCO JSON")).bytes}`) as { annotations: { area: number }[] };

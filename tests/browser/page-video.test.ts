@@ -1,11 +1,14 @@
 /** Videos: frames in folders are tracked through, shown on a time axis, and corrected in the middle. */
 import assert from "node:assert/strict";
 import { WEBGL } from "../support/browser.js";
+import { glbJson } from "../support/files.js";
 import { COUNT, cameraAt, dropFolder, frames, poseIn } from "../support/page-files.js";
 import { truth } from "../support/scene.js";
 import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests();
+
+const TRACKS = ["translation", "rotation", "scale"];
 
 /** The x of the object's centre, metres. */
 async function centreX({ page }: SitePage): Promise<number> {
@@ -56,6 +59,16 @@ test("a correction in the middle is carried to the other frames, and all poses a
   assert.equal(name, "toy-frames.json");
   const { toy } = JSON.parse(`${bytes}`) as { toy: { frames: Record<string, { scale: number }> } };
   assert.equal(Object.keys(toy.frames).length, COUNT);
+  const { animations, accessors } = glbJson((await opened.saved("Animated GLB")).bytes);
+  const { channels, samplers } = animations[0];
+  assert.deepEqual(
+    channels.map(({ target, sampler }: { target: { path: string }; sampler: number }) => [
+      target.path,
+      accessors[samplers[sampler].output].count,
+    ]),
+    // Of the object, and of the camera, whose poses are known.
+    [...TRACKS, ...TRACKS].map((path) => [path, COUNT]),
+  );
   // Another scene ends the video.
   await opened.sample("mug");
   await opened.shows("Mug");

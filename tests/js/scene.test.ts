@@ -2,9 +2,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createAligner, type SceneAlignment, type SceneInput, type SceneResult } from "sim3align";
-import { exportSceneGlb } from "sim3align/conventions";
+import { exportSceneGlb, toSim3 } from "sim3align/conventions";
 import { cocoRle, glbJson, png } from "../support/files.js";
-import { assertValid } from "../support/gltf-validator.js";
+import { assertValid, gltfOf } from "../support/gltf-validator.js";
 import { transformed } from "../support/scene.js";
 import { labels, masks, standingGlb, standingMesh, tableScene, tableView } from "../support/table.js";
 
@@ -68,4 +68,23 @@ test("a scene is exported as one GLB with the support as ground", async () => {
   const points = [-normal[0] * d, -normal[1] * d, -normal[2] * d, 0, 0, 0];
   const foot = transformed(points, { scale: 1, ...nodes[names.indexOf("view")] });
   assert.ok(Math.abs(foot[1] ?? 1) < 1e-9 && Math.abs((foot[4] ?? 0) - d) < 1e-9, `${foot}`);
+});
+
+test("a moving object and a moving camera are animated, with a key for each pose", async () => {
+  const motion = [0, 1, 2].map((i) => ({
+    timeS: i / 30,
+    transform: toSim3({ scale: 1 + i, rotation: [0, Math.sin(i), 0, Math.cos(i)], translation: [0.1 * i, 0, 1] }),
+  }));
+  const camera = { fy: tableView.camera.fy, width, height, motion };
+  for (const mesh of [standingMesh, standingGlb]) {
+    const bytes = exportSceneGlb([{ name: "toy", mesh, transform: motion[0]?.transform ?? [], motion }], { camera });
+    await assertValid(bytes);
+    const [{ tracks } = { tracks: [] }] = (await gltfOf(bytes)).animations;
+    const values = Object.fromEntries(tracks.map((track) => [track.name, [...track.values]]));
+    assert.deepEqual(values["toy.scale"], [1, 1, 1, 2, 2, 2, 3, 3, 3]);
+    assert.deepEqual(values["camera.position"], values["toy.position"]);
+  }
+  const backwards = [...motion].reverse();
+  const broken = { name: "toy", mesh: standingMesh, transform: motion[0]?.transform ?? [], motion: backwards };
+  assert.throws(() => exportSceneGlb([broken]), { code: "INVALID_ARGUMENT", argument: "objects[0].motion[1].timeS" });
 });

@@ -22,9 +22,11 @@ export async function assertValid(glb: Uint8Array): Promise<Report["info"]> {
   return info;
 }
 
+/** A GLB as three.js reads it. */
+export const gltfOf = (glb: Uint8Array) => new GLTFLoader().parseAsync(Uint8Array.from(glb).buffer, "");
+
 /** The scene of a GLB. */
-export const loadGlb = async (glb: Uint8Array) =>
-  (await new GLTFLoader().parseAsync(Uint8Array.from(glb).buffer, "")).scene;
+export const loadGlb = async (glb: Uint8Array) => (await gltfOf(glb)).scene;
 
 /** All vertices of a GLB in its world; without those of the support. */
 export async function verticesOf(glb: Uint8Array): Promise<number[]> {

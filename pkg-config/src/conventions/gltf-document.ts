@@ -88,22 +88,33 @@ export class GltfDocument {
 
   /** Adds a mesh; returns its index. */
   addMesh({ positions, indices }: Mesh, material?: number): number {
-    const view = (array: Float32Array | Uint32Array, target: number) => {
-      const bytes = new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
-      const byteOffset = this.#addBinary(bytes);
-      return this.push("bufferViews", { buffer: 0, byteOffset, byteLength: bytes.length, target });
-    };
     const POSITION = this.push("accessors", {
-      ...{ bufferView: view(positions, 34962), componentType: 5126, type: "VEC3", count: positions.length / 3 },
+      ...{
+        bufferView: this.#addView(positions, 34962),
+        componentType: 5126,
+        type: "VEC3",
+        count: positions.length / 3,
+      },
       ...bounds(positions),
     });
     const primitive: Json = { attributes: { POSITION } };
     if (indices !== null) {
-      const corners = { bufferView: view(Uint32Array.from(indices), 34963), componentType: 5125, type: "SCALAR" };
-      primitive.indices = this.push("accessors", { ...corners, count: indices.length });
+      const bufferView = this.#addView(Uint32Array.from(indices), 34963);
+      const corners = { bufferView, componentType: 5125, type: "SCALAR", count: indices.length };
+      primitive.indices = this.push("accessors", corners);
     }
     if (material !== undefined) primitive.material = material;
     return this.push("meshes", { primitives: [primitive] });
+  }
+
+  /** Adds the values of an animation: numbers, or vectors of three or four; returns the index of their accessor. */
+  addValues(values: readonly (readonly number[])[]): number {
+    const [size = 1, numbers] = [values[0]?.length, Float32Array.from(values.flat())];
+    const type = size === 1 ? "SCALAR" : `VEC${size}`;
+    // Times need their range.
+    const range = size === 1 ? { min: [Math.min(...numbers)], max: [Math.max(...numbers)] } : {};
+    const bufferView = this.#addView(numbers);
+    return this.push("accessors", { bufferView, componentType: 5126, type, count: values.length, ...range });
   }
 
   /** The file that shows these nodes. */
@@ -127,6 +138,12 @@ export class GltfDocument {
     if (Object.keys(extensions).length > 0) json.extensions = extensions;
     if (binary.length > 0) json.buffers = [{ byteLength: binary.length }, ...this.#buffers];
     return { json, chunks: binary.length > 0 ? [[binaryChunk, binary]] : [] };
+  }
+
+  #addView(array: Float32Array | Uint32Array, target?: number): number {
+    const bytes = new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
+    const byteOffset = this.#addBinary(bytes);
+    return this.push("bufferViews", { buffer: 0, byteOffset, byteLength: bytes.length, ...(target && { target }) });
   }
 
   /** Adds bytes to the buffer, at a multiple of four; returns where. */

@@ -41,14 +41,20 @@ const listResults: Export = {
 };
 
 /** What can be saved of a video besides. */
-const videoResults: Export = {
-  ...{ title: "JSON of all frames", about: "The poses of the video by frame" },
-  act: async (_, { name }) => download(`${fileName(name)}-frames.json`, (await writers()).videoText(name)),
-};
+const videoResults: readonly Export[] = [
+  {
+    ...{ title: "JSON of all frames", about: "The poses of the video by frame" },
+    act: async (_, { name }) => download(`${fileName(name)}-frames.json`, (await writers()).videoText(name)),
+  },
+  {
+    ...{ title: "Animated GLB", about: "The object as it moves, and the camera" },
+    act: async (scene, one) => download(`${fileName(one.name)}-frames.glb`, (await writers()).videoBytes(scene, one)),
+  },
+];
 
 /** What is in sight. */
 export const firstExports = (): Export[] => [
-  ...(video.value === null ? [] : [videoResults]),
+  ...(video.value === null ? [] : videoResults),
   ...(list.value.length > 1 ? [listResults] : []),
   ...[results, picture],
 ];

@@ -1,7 +1,8 @@
 /** Writers of results, in formats that other programs read. */
-import { exportGlb, exportPly, exportSceneGlb, toBop, toRowMajor } from "sim3align/conventions";
+import type { Sim3 } from "sim3align";
+import { compose, exportGlb, exportPly, exportSceneGlb, invert, toBop, toRowMajor } from "sim3align/conventions";
 import { videoWork } from "../alignment/video.js";
-import { sceneResult, videoResult } from "../session/results.js";
+import { poseIn, sceneResult, videoResult } from "../session/results.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import type { Scene } from "../state/scene.js";
@@ -50,6 +51,27 @@ export function sceneBytes({ objects }: Scene): Uint8Array {
     transform: pose.value.transform,
   }));
   return exportSceneGlb(nodes, { support: support.value });
+}
+
+/** Frames per second of an animation; videos of depth maps do not say how fast they are. */
+const FRAME_RATE = 30;
+
+/** The object as it moves through the video, with the camera, in the frame of the first camera. */
+export function videoBytes(scene: Scene, { name, mesh, glb }: ObjectModel): Uint8Array {
+  const { framePoses, frameWorks } = videoWork();
+  const { cameras = null } = page.video.peek() ?? {};
+  const toFirst = cameras?.map((camera) => compose(invert(cameras[0] ?? camera), camera));
+  const timed = (i: number, transform: Sim3) => ({ timeS: i / FRAME_RATE, transform });
+  const motion = framePoses.flatMap((pose, i) => {
+    const transform = poseIn(pose, frameWorks[i]);
+    const first = toFirst?.[i];
+    return transform === null ? [] : [timed(i, first === undefined ? transform : compose(first, transform))];
+  });
+  const [start] = motion;
+  if (start === undefined) throw new Error("No frame has a pose yet: track the video first.");
+  const { camera, width, height } = scene;
+  const moving = { ...camera, width, height, motion: toFirst?.map((transform, i) => timed(i, transform)) };
+  return exportSceneGlb([{ name, mesh: glb ?? mesh, transform: start.transform, motion }], { camera: moving });
 }
 
 /** The mesh at its pose and metric scale as PLY, in the OpenCV camera frame. */

@@ -4,10 +4,11 @@ import type { Metrics, Sim3 } from "sim3align";
 import { toSim3 } from "sim3align/conventions/similarity";
 import type { Inputs } from "../state/inputs.js";
 import type { ObjectModel, Verdict } from "../state/object-model.js";
+import type { ObjectWork } from "../state/object-work.js";
 import { page } from "../state/page.js";
 import type { PoseSource } from "../state/pose.js";
 import { isMetric, type Scene, unitOf } from "../state/scene.js";
-import type { VideoWork } from "../state/video.js";
+import type { FramePose, VideoWork } from "../state/video.js";
 
 const { options } = page;
 
@@ -64,14 +65,17 @@ export function sceneResult(scene: Scene, inputs: Inputs): SceneResult {
   return { ...Object.fromEntries(entries), _about: about(scene, inputs) };
 }
 
+/** The pose in a frame of a video. One that was set but not accepted is no result yet. */
+export const poseIn = (pose: FramePose | null = null, work: ObjectWork | null = null): Sim3 | null =>
+  work?.verdict === "accepted" ? toSim3(work.matrix) : (pose?.transform ?? null);
+
 /** The poses of a video by the names of its frames, as `sim3align track --json` writes them, with what was decided. */
 export function videoResult(frames: readonly Inputs[], { framePoses, frameWorks }: VideoWork): SceneResult {
   const entries = frames.map(({ name }, i) => {
     const [pose, work] = [framePoses[i] ?? null, frameWorks[i] ?? null];
     const { source = "tracked", comment = "", verdict = null } = work ?? {};
-    // A pose that was set but not accepted is no result yet.
-    const held = verdict === "accepted" && work !== null ? toSim3(work.matrix) : pose?.transform;
-    if (held === undefined) return [name, null];
+    const held = poseIn(pose, work);
+    if (held === null) return [name, null];
     const { confidence = null, state = "lost" } = pose ?? {};
     return [name, { ...transformOf(held), confidence, state, decision: decisionOf(verdict, source), comment }];
   });
