@@ -128,8 +128,8 @@ macro_rules! options {
 
         impl $crate::options::Options for $type {
             const DOC: &'static str = concat!($($type_doc, "\n"),*);
-            const FIELDS: &'static [(&'static str, &'static str)] =
-                &[$((stringify!($name), concat!($($doc, "\n"),+))),+];
+            const NAMES: &'static [&'static str] = &[$(stringify!($name)),+];
+            const DOCS: &'static [&'static str] = &[$(concat!($($doc, "\n"),+)),+];
 
             fn fields(&mut self) -> Vec<$crate::options::Field<'_>> {
                 vec![$($crate::options::Field::$kind(&mut self.$name $(, $range)?)),+]
@@ -148,10 +148,13 @@ pub trait Options: Default + Clone {
     /// Its documentation.
     const DOC: &'static str;
 
-    /// The Rust name and the documentation of every option.
-    const FIELDS: &'static [(&'static str, &'static str)];
+    /// The Rust name of every option.
+    const NAMES: &'static [&'static str];
 
-    /// Every option's value, in the order of [`Options::FIELDS`].
+    /// The documentation of every option. Apart from the names, so that modules, which need only these, do not hold it.
+    const DOCS: &'static [&'static str];
+
+    /// Every option's value, in the order of [`Options::NAMES`].
     fn fields(&mut self) -> Vec<Field<'_>>;
 
     /// Every option, by its JavaScript name.
@@ -161,7 +164,7 @@ pub trait Options: Default + Clone {
 
     /// The JavaScript names of all options.
     fn names() -> Vec<String> {
-        Self::FIELDS.iter().map(|(name, _)| camel_case(name)).collect()
+        Self::NAMES.iter().map(|name| camel_case(name)).collect()
     }
 
     /// Checks options that depend on each other, once each is in its range.

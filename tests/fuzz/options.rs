@@ -13,7 +13,7 @@ use crate::entropy::Entropy;
 pub fn options<O: Options>(e: &mut Entropy<'_>, most: u32) -> O {
     let mut options = O::default();
     for _ in 0..e.below(8).saturating_sub(3) {
-        let at = e.below(O::FIELDS.len());
+        let at = e.below(O::NAMES.len());
         if let Some(field) = options.fields().into_iter().nth(at) {
             change(e, field, most);
         }

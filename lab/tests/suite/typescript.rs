@@ -56,8 +56,7 @@ struct Call {
 
 fn call<T: Options>(key: &'static str, interface: &'static str, preset: &'static str) -> Call {
     let mut options = T::default();
-    let rows =
-        options.named_fields().into_iter().zip(T::FIELDS).map(|((name, field), (_, doc))| row(&name, doc, &field));
+    let rows = options.named_fields().into_iter().zip(T::DOCS).map(|((name, field), doc)| row(&name, doc, &field));
     Call { key, interface, doc: T::DOC, preset, rows: rows.collect() }
 }
 
