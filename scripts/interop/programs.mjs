@@ -49,8 +49,9 @@ async function commands({ writes }, name) {
   };
   await writes({
     command(output, _, words, source) {
+      /** @type {Record<string, string>} */
       const paths = { $input: sources[source] ?? fileOf(source).file, $output: output };
-      const args = words.split(" ").map((/** @type {keyof paths} */ word) => paths[word] ?? word);
+      const args = words.split(" ").map((/** @type {string} */ word) => paths[word] ?? word);
       execFileSync(process.execPath, [program, ...args], { stdio: "pipe" });
     },
   });
