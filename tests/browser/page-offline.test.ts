@@ -34,7 +34,8 @@ test("after the first visit, the page and all samples work without a connection"
 test("a new version is shown at the next load, and the one before is forgotten", visit, async (_, page) => {
   const site = join(folder, "site");
   cpSync(siteDir, site, { recursive: true });
-  writeFileSync(join(folder, "outside.html"), "<title>A page that the site's worker does not control</title>");
+  const outside = '<link rel="icon" href="data:,"><title>A page that the site\'s worker does not control</title>';
+  writeFileSync(join(folder, "outside.html"), outside);
   const server = await serve(folder);
   try {
     await page.goto(`${server.url}site/index.html#sample=mug`);

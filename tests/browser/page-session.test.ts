@@ -55,9 +55,9 @@ test("a reload restores the scene, the pose and the decision; unstored work asks
   assert.equal(await page.getAttribute("main", "data-scene"), "Own files");
   page.once("dialog", (dialog) => dialog.accept());
   await opened.click("#forget");
-  await page.locator('main[data-scene="Table"]').waitFor(PATIENCE);
+  await page.locator('main[data-scene="Kitchen"]').waitFor(PATIENCE);
   await page.reload();
-  await opened.shows("Table");
+  await opened.shows("Kitchen");
 });
 
 test("the ground that objects stand on is known again after a reload", async (opened, page) => {
