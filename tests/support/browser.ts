@@ -39,6 +39,9 @@ export const SOFTWARE = [
 /** Software rendering with WebGPU and WebGL 2. */
 export const SOFTWARE_WEBGPU = [...SOFTWARE, "--enable-features=Vulkan", "--use-vulkan=swiftshader"];
 
+/** Time limit for anything that a busy machine may be slow at. */
+export const PATIENCE = { timeout: 120_000 };
+
 /** Chromium without WebGPU: the 3D view draws with WebGL 2. */
 export const WEBGL = ["!--enable-unsafe-webgpu"];
 /** Chromium without graphics, for tests of other parts than the 3D view: drawing it in software takes most of their time. */
@@ -85,6 +88,7 @@ export class PageTest {
     this.started ??= this.start();
     const { browser, server } = await this.started;
     const page = await browser.newPage(context);
+    page.setDefaultTimeout(PATIENCE.timeout);
     if (script !== undefined) await page.addInitScript(script);
     const errors: string[] = [];
     page.on("pageerror", (error) => errors.push(error.message));

@@ -3,14 +3,13 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { type TestContext, test } from "node:test";
 import type { BrowserContextOptions, Locator, Page } from "playwright-core";
-import { browserFor, violations, WITHOUT_3D } from "./browser.js";
+import { browserFor, PATIENCE, violations, WITHOUT_3D } from "./browser.js";
 import { repository } from "./environment.js";
+
+export { PATIENCE };
 
 /** Output of `npm run build:www`. */
 export const siteDir = join(repository, "target", "www");
-
-/** Time limit for anything that a busy machine may be slow at. */
-export const PATIENCE = { timeout: 120_000 };
 
 /** Repeats a measurement until it is as wanted: how long software renderers and databases take is unknown. */
 export async function until<T>(measure: () => Promise<T>, isWanted: (found: T) => boolean): Promise<T> {
