@@ -103,16 +103,32 @@ impl SymmetryGroup {
         }
         let mut best = (f64::NEG_INFINITY, UnitQuaternion::identity());
         for element in &self.discrete {
-            let member = match &self.continuous {
-                Some(axis) => element * twist(&(element.inverse() * rotation), axis),
-                None => *element,
-            };
+            let member = self.nearest_of(element, rotation);
             let cosine = member.coords.dot(&rotation.coords).abs();
             if cosine > best.0 {
                 best = (cosine, member);
             }
         }
         best.1
+    }
+
+    /// The elements by their nearness to `rotation`: of those that differ by a rotation about an axis of revolution, the nearest one.
+    pub fn by_nearness(&self, rotation: &UnitQuaternion<f64>) -> Vec<UnitQuaternion<f64>> {
+        if self.sphere {
+            return vec![*rotation];
+        }
+        let mut members: Vec<_> = self.discrete.iter().map(|element| self.nearest_of(element, rotation)).collect();
+        let cosine = |member: &UnitQuaternion<f64>| member.coords.dot(&rotation.coords).abs();
+        members.sort_by(|a, b| cosine(b).total_cmp(&cosine(a)));
+        members
+    }
+
+    /// The rotation nearest to `rotation` of those that differ from an element by one about the axis of revolution.
+    fn nearest_of(&self, element: &UnitQuaternion<f64>, rotation: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+        match &self.continuous {
+            Some(axis) => element * twist(&(element.inverse() * rotation), axis),
+            None => *element,
+        }
     }
 
     fn generated(axes: &[SymmetryAxis]) -> Result<Self> {

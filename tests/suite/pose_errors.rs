@@ -72,7 +72,10 @@ fn the_nearest_turn_is_the_nearest_of_all() {
     for seed in 0..200 {
         let mut random = Random::new(seed, 917);
         let rotation = Rotation3::new(Vector3::from_fn(|_, _| random.uniform() * 6.0 - 3.0));
-        let nearest = group.nearest(&nalgebra::UnitQuaternion::from_rotation_matrix(&rotation));
+        let rotation_of = nalgebra::UnitQuaternion::from_rotation_matrix(&rotation);
+        let nearest = group.nearest(&rotation_of);
+        let sorted: Vec<f64> = group.by_nearness(&rotation_of).iter().map(|turn| turn.angle_to(&rotation_of)).collect();
+        assert!(sorted.len() == 24 && sorted.is_sorted(), "seed {seed}: {sorted:?}");
         let found = nearest.to_rotation_matrix().angle_to(&rotation);
         let expected = turns.iter().map(|t| t.angle_to(&rotation)).fold(f64::INFINITY, f64::min);
         assert!((found - expected).abs() < 1e-6, "seed {seed}: {found}, expected {expected}");

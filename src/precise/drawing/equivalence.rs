@@ -33,8 +33,13 @@ impl Equivalence {
         if !self.is_any() {
             return a;
         }
-        let turn = UnitQuaternion::new_normalize(Quaternion::from((a.conjugate() * b).to_array()));
-        a * DQuat::from_array(self.0.nearest(&turn).coords.into())
+        a * DQuat::from_array(self.0.nearest(&turn_between(a, b)).coords.into())
+    }
+
+    /// The rotations that are equivalent to `a`, by their nearness to `b`; about an axis of revolution, the nearest one.
+    pub fn by_nearness(&self, a: DQuat, b: DQuat) -> Vec<DQuat> {
+        let members = self.0.by_nearness(&turn_between(a, b));
+        members.iter().map(|member| a * DQuat::from_array(member.coords.into())).collect()
     }
 
     /// The rotations that are equivalent to this one, without it: all of a finite group, and `rolls` about an axis of
@@ -85,4 +90,9 @@ impl Equivalence {
     pub fn is_sphere(&self) -> bool {
         self.0.is_sphere()
     }
+}
+
+/// The rotation from `a` to `b`, in the frame of the mesh.
+fn turn_between(a: DQuat, b: DQuat) -> UnitQuaternion<f64> {
+    UnitQuaternion::new_normalize(Quaternion::from((a.conjugate() * b).to_array()))
 }

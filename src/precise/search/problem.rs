@@ -199,19 +199,27 @@ impl Search {
         refiner.refine_in_proportion(&mut Canvas::default(), pose, polish.steps, &self.mesh.surface).pose
     }
 
-    /// The equivalent of a ranked pose whose rotation is nearest to `reference`, so that noise does not choose among them; `None`
-    /// if it is the pose itself, or the image tells them apart.
+    /// The equivalent of a ranked pose whose rotation is nearest to `reference`, so that noise does not choose among them, without
+    /// those that the image tells from it; `None` if it is the pose itself.
     pub fn canonical(&self, best: &Candidate, reference: DQuat) -> Option<CropPose> {
-        let turned = self.nearest(&best.pose, reference);
-        if angle_between(turned.rotation, best.pose.rotation) < EQUAL_MAX_RAD {
-            return None;
-        }
-
-        // Scored as it was in the ranking.
-        let refiner = Refiner { objective: self.objective(FINE), lock_scale: self.settings.lock_scale };
-        let ranked = refiner.refine_in_proportion(&mut Canvas::default(), turned, EQUIVALENT_STEPS, &self.mesh.surface);
-        let is_equal = best.score.total - ranked.score.total < EQUIVALENT_MAX_SCORE_LOSS;
-        is_equal.then(|| self.nearest(&self.polished(ranked.pose), reference))
+        let rotations = self.equivalence.by_nearness(best.pose.rotation, reference).into_iter();
+        let is_other = |rotation: &DQuat| angle_between(*rotation, best.pose.rotation) >= EQUAL_MAX_RAD;
+        let mut others = rotations.take_while(is_other).map(|rotation| self.mesh.turns.turned(&best.pose, rotation));
+        others.find_map(|turned| {
+            // Scored as it was in the ranking.
+            let refiner = Refiner { objective: self.objective(FINE), lock_scale: self.settings.lock_scale };
+            let canvas = &mut Canvas::default();
+            let ranked = refiner.refine_in_proportion(canvas, turned, EQUIVALENT_STEPS, &self.mesh.surface);
+            let is_equal = best.score.total - ranked.score.total < EQUIVALENT_MAX_SCORE_LOSS;
+            // Refinement has turned it a little.
+            is_equal.then(|| {
+                let polished = self.polished(ranked.pose);
+                let rotations = self.equivalence.by_nearness(polished.rotation, reference).into_iter();
+                let angle = |rotation: &DQuat| angle_between(*rotation, turned.rotation);
+                let nearest = rotations.min_by(|a, b| angle(a).total_cmp(&angle(b)));
+                self.mesh.turns.turned(&polished, nearest.unwrap_or(polished.rotation))
+            })
+        })
     }
 
     /// The pose, of those that the symmetry of the mesh makes equal, whose rotation is nearest to `reference`.
