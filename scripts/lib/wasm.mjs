@@ -19,8 +19,8 @@ import { step } from "./step.mjs";
 
 /** @type {readonly WasmModule[]} */
 export const wasmModules = [
-  { name: "core", crate: "sim3align-core", budget: 194_000 },
-  { name: "joint", crate: "sim3align-joint", budget: 311_000 },
+  { name: "core", crate: "sim3align-core", budget: 195_000 },
+  { name: "joint", crate: "sim3align-joint", budget: 312_000 },
   { name: "registration", crate: "sim3align-registration", budget: 148_500 },
   { name: "formats", crate: "sim3align-module-formats", budget: 264_000 },
   { name: "depth-files", crate: "sim3align-depth-files", budget: 245_000 },

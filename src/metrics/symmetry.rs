@@ -117,9 +117,14 @@ impl SymmetryGroup {
         if self.sphere {
             return vec![*rotation];
         }
-        let mut members: Vec<_> = self.discrete.iter().map(|element| self.nearest_of(element, rotation)).collect();
         let cosine = |member: &UnitQuaternion<f64>| member.coords.dot(&rotation.coords).abs();
-        members.sort_by(|a, b| cosine(b).total_cmp(&cosine(a)));
+        // Inserted in order, which needs less code than another sort.
+        let mut members = Vec::with_capacity(self.discrete.len());
+        for element in &self.discrete {
+            let member = self.nearest_of(element, rotation);
+            let nearer = members.partition_point(|other| cosine(other) >= cosine(&member));
+            members.insert(nearer, member);
+        }
         members
     }
 
