@@ -35,10 +35,11 @@ async function check(url) {
   const browser = await launchChromium();
   try {
     const page = await browser.newPage();
+    page.setDefaultTimeout(LIMIT_MS);
     await page.goto(url);
     const status = page.locator('#status:is([data-state="done"], [data-state="failed"]):not(.behind)');
-    await status.filter({ hasText: /Aligned|:/ }).waitFor({ timeout: LIMIT_MS });
-    await page.locator("#dimensions").waitFor({ timeout: LIMIT_MS });
+    await status.filter({ hasText: /Aligned|:/ }).waitFor();
+    await page.locator("#dimensions").waitFor();
     const text = async (/** @type {string} */ selector) => (await page.textContent(selector))?.trim();
     const [paint, aligned] = await page.evaluate(() =>
       ["first-contentful-paint", "aligned"].map(
