@@ -189,13 +189,13 @@ impl Finder {
     /// Whether a rotation maps the surface onto itself.
     fn maps(&self, axis: DVec3, angle: f64, tolerance: &Tolerance) -> bool {
         // Twice, so that rounding does not matter.
-        let distances = self.distances(&self.samples, axis, angle, 2.0 * tolerance.mean);
+        let distances = self.distances((&self.samples, 1), axis, angle, 2.0 * tolerance.mean);
         let tail = quantile(distances.iter().copied(), 0.95).map_or(f64::INFINITY, f64::from);
         if mean(&distances) > tolerance.mean * self.diagonal || tail > tolerance.tail * self.diagonal {
             return false;
         }
 
-        let distances = self.distances(&self.outermost, axis, angle, f64::INFINITY);
+        let distances = self.distances((&self.outermost, 1), axis, angle, f64::INFINITY);
         distances.iter().all(|distance| f64::from(*distance) <= tolerance.protrusion * self.diagonal)
     }
 
@@ -203,20 +203,20 @@ impl Finder {
     /// it is more than `most`.
     fn distance(&self, axis: DVec3, angle: f64, count: usize, most: f64) -> f64 {
         // The samples are in the order of the triangles: evenly chosen ones are spread over the surface.
-        let chosen: Vec<Vec3> = self.samples.iter().copied().step_by(self.samples.len() / count).take(count).collect();
-        mean(&self.distances(&chosen, axis, angle, most)) / self.diagonal
+        let step = self.samples.len() / count;
+        mean(&self.distances((&self.samples[..count * step], step), axis, angle, most)) / self.diagonal
     }
 
-    /// The distances of points from the surface after a rotation. Those after their mean is beyond `most`, relative to the
-    /// diagonal, are infinite, and cost nothing.
-    fn distances(&self, points: &[Vec3], axis: DVec3, angle: f64, most: f64) -> Vec<f32> {
+    /// The distances of every `step`-th point from the surface after a rotation. Those after their mean is beyond `most`, relative
+    /// to the diagonal, are infinite, and cost nothing.
+    fn distances(&self, (points, step): (&[Vec3], usize), axis: DVec3, angle: f64, most: f64) -> Vec<f32> {
         let turn = exp(axis * angle);
-        let count = points.len();
+        let count = points.len() / step;
         let sum = Cell::new(0.0);
         let turned = |i: usize| match sum.get() / count as f64 / self.diagonal > most {
             // Not a number is near nothing.
             true => (Vec3::NAN, None),
-            false => ((turn * (points[i].as_dvec3() - self.center) + self.center).as_vec3(), None),
+            false => ((turn * (points[i * step].as_dvec3() - self.center) + self.center).as_vec3(), None),
         };
         let mut distances = Vec::with_capacity(count);
         self.tree.nearest_of_each(count, &turned, &mut |_, nearest| {
