@@ -88,15 +88,8 @@ export class GltfDocument {
 
   /** Adds a mesh; returns its index. */
   addMesh({ positions, indices }: Mesh, material?: number): number {
-    const POSITION = this.push("accessors", {
-      ...{
-        bufferView: this.#addView(positions, 34962),
-        componentType: 5126,
-        type: "VEC3",
-        count: positions.length / 3,
-      },
-      ...bounds(positions),
-    });
+    const points = { bufferView: this.#addView(positions, 34962), componentType: 5126, type: "VEC3" };
+    const POSITION = this.push("accessors", { ...points, count: positions.length / 3, ...bounds(positions) });
     const primitive: Json = { attributes: { POSITION } };
     if (indices !== null) {
       const bufferView = this.#addView(Uint32Array.from(indices), 34963);
