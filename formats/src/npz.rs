@@ -50,7 +50,7 @@ const OTHER_MAPS: &str = "conf confidence uncertainty error sky depth_conf pts3d
 const OTHERS: &str = "normal normals rgb image images img color colors colour world_points extrinsic extrinsics pose \
     poses camera_pose camera_poses cam2world c2w w2c timestamp timestamps frame_id height width image_size gravity";
 
-/// Whether a name is one of these.
+/// Whether `name` is among `names`, which have spaces between them.
 fn is_among(names: &str, name: &str) -> bool {
     names.split(' ').any(|one| one == name)
 }

@@ -22,13 +22,13 @@ const places = data("places");
 const statedFor = (entries, name, version) =>
   entries.filter(({ programs }) => programs.includes(name) || programs.includes(`${name} ${version}`));
 
-/** What a cell is called. @param {string} program @param {string} version @param {string} action @param {string} of @param {string} variant */
+/** The names of a cell. @param {string} program @param {string} version @param {string} action @param {string} of @param {string} variant */
 const named = (program, version, action, of, variant) =>
   places[of] === undefined
     ? { program, version, action, kind: of, variant, of }
     : { program, version, action: "place", kind: places[of].question, variant, of };
 
-/** The files that a program is to write. @param {string} program @param {string} version @returns {Written[]} */
+/** The files that a program should write. @param {string} program @param {string} version @returns {Written[]} */
 export function filesOf(program, version) {
   const folder = join(root, "files", `${program}-${version}`.replaceAll(" ", "-"));
   const rows = statedFor(files, program, version).flatMap(({ kind, each, rows }) => {
@@ -48,7 +48,7 @@ export function filesOf(program, version) {
   });
 }
 
-/** What a program is to find in our files. @param {string} program @param {string} version */
+/** The facts that a program should find in our files. @param {string} program @param {string} version */
 const factsOf = (program, version) =>
   statedFor(loads, program, version).flatMap(({ of, facts }) =>
     Object.entries(facts).map(([fact, { variant, ...expect }]) => ({
@@ -90,7 +90,7 @@ export async function rowsOf(program, version, run, read) {
 }
 
 /**
- * What an npm program does, as `cells.py` has it for those of Python.
+ * The calls with which an npm program fills its cells; `cells.py` has those of Python programs.
  * @typedef {object} Cells
  * @property {(writers: Record<string, (path: string, options: any, ...args: any[]) => unknown>) => Promise<void>} writes
  * @property {(load: (path: string) => Promise<Iterable<number>>) => Promise<void>} glb

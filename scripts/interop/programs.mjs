@@ -105,7 +105,7 @@ async function three({ writes, glb }) {
     return objects;
   };
 
-  /** What is exported, made of the object with colours of vertices. @type {Record<string, (printed: any) => any>} */
+  /** The objects to export, each made from the one with vertex colours. @type {Record<string, (printed: any) => any>} */
   const forms = {
     printed: (printed) => printed,
     plain: ({ geometry }) => new three.Mesh(geometry.deleteAttribute("color"), new three.MeshStandardMaterial()),

@@ -55,7 +55,7 @@ const readers = {
   },
 };
 
-/** What a reader returns of a file that a program wrote, for `checks.py`. @param {Written} written */
+/** The result of our reader for a file that a program wrote, for `checks.py`. @param {Written} written */
 export async function readBack(written) {
   const bytes = readFileSync(written.file);
   return readers[written.of]?.(bytes, written).catch(({ code = "none", message }) => ({ code, message }));

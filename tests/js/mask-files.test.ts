@@ -18,7 +18,7 @@ const expected = Uint8Array.from({ length: width * height }, (_, i) => {
 const labelme = (shapes: object[], more = {}) => ({ shapes, imageHeight: height, imageWidth: width, ...more });
 const polygon = { label: "mug", points: corners, shape_type: "polygon", group_id: null };
 
-/** What it is, the content of the file, and the index of the mask in it. */
+/** Name, content of the file, and index of the mask in it. */
 const layouts: [what: string, json: object, index?: number][] = JSON.parse(
   Buffer.from(fixture("masks.json")).toString("utf8"),
 );

@@ -1,4 +1,4 @@
-/** What mesh files and photo files hold. */
+/** The content of mesh files and of the EXIF data of photos, as the readers return it. */
 
 import type { PixelArray } from "../values/pixels.js";
 
