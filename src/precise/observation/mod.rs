@@ -33,6 +33,8 @@ pub struct Grid {
     pub triangles: usize,
     /// Depth error that halves the credit of a cell, relative to the observed diagonal.
     pub depth_error: f64,
+    /// Factor of the weight of the normals.
+    pub normals: f32,
     /// Factor of the weight of the outline, which is not informative on cells as wide as the errors of the rotation
     /// grid.
     pub outline: f32,

@@ -54,13 +54,13 @@ pub struct Round {
 #[rustfmt::skip]
 const fn grids(effort: Effort) -> [Grid; GRIDS] {
     let q = effort as usize;
-    //     mask cells: fast, balanced, best      triangles: fast, balanced, best           depth error        outline
+    //     mask cells: fast, balanced, best      triangles: fast, balanced, best           depth error        normals       outline
     [
-        Grid { cells: [ 120,  150,  150][q], triangles: [ 150,    200,    200][q], depth_error: 0.12, outline: 0.0 },
-        Grid { cells: [ 400,  500,  500][q], triangles: [ 500,    700,    700][q], depth_error: 0.12, outline: 0.0 },
-        Grid { cells: [ 700,  900,  900][q], triangles: [1000,   1500,   1500][q], depth_error: 0.06, outline: 0.5 },
-        Grid { cells: [2000, 3000, 3000][q], triangles: [3000,   5000,   5000][q], depth_error: 0.03, outline: 1.0 },
-        Grid { cells: [4000, 7000, 7000][q], triangles: [5000, 10_000, 10_000][q], depth_error: 0.03, outline: 1.0 },
+        Grid { cells: [ 120,  150,  150][q], triangles: [ 150,    200,    200][q], depth_error: 0.12, normals: 1.0, outline: 0.0 },
+        Grid { cells: [ 400,  500,  500][q], triangles: [ 500,    700,    700][q], depth_error: 0.12, normals: 1.0, outline: 0.0 },
+        Grid { cells: [ 700,  900,  900][q], triangles: [1000,   1500,   1500][q], depth_error: 0.06, normals: 1.0, outline: 0.5 },
+        Grid { cells: [2000, 3000, 3000][q], triangles: [3000,   5000,   5000][q], depth_error: 0.03, normals: 1.0, outline: 1.0 },
+        Grid { cells: [4000, 7000, 7000][q], triangles: [5000, 10_000, 10_000][q], depth_error: 0.01, normals: 2.0, outline: 1.0 },
     ]
 }
 
@@ -231,8 +231,9 @@ impl SearchSettings {
 
     /// The objective on one of the grids.
     pub fn scoring(&self, clean: &CleanObservation, grid: usize) -> Scoring {
-        let Grid { depth_error, outline, .. } = self.grids[grid];
+        let Grid { depth_error, normals, outline, .. } = self.grids[grid];
         let mut weights = self.weights;
+        weights.normals *= normals;
         weights.outline *= outline;
         Scoring {
             weights,

@@ -27,6 +27,12 @@ pub const RIVAL_MIN_ANGLE_RAD: f64 = 0.5;
 /// at most 0.08, and 8 % by less than this.
 const DECISIVE_SCORE_LEAD: f32 = 0.15;
 
+/// Score below the best pose down to which ranked poses are polished, and their maximum number.
+const CLOSE_MAX_SCORE_LOSS: f32 = 0.05;
+const MAX_CLOSE: usize = 6;
+/// Gain of score on the finest grid for which another pose than the first of the ranking is taken.
+const MIN_DETAIL_GAIN: f32 = 0.02;
+
 /// The best of this many rotations are followed by the next search.
 const KEPT_QUOTIENT: usize = 4;
 
@@ -349,15 +355,26 @@ impl Rounds {
     /// Ends the round that ranks the candidates; the best ones are polished next.
     fn end_ranking(&mut self, round: Round, results: Vec<Candidate>) -> Vec<CropPose> {
         self.candidates = self.kept(Round { keep: usize::MAX, ..round }, results);
-        poses_of(&self.candidates[..round.keep.min(self.candidates.len())])
+        // A search for rivals polishes none.
+        let Some(best) = self.candidates.first().filter(|_| round.keep > 0) else { return Vec::new() };
+        let is_close = |candidate: &&Candidate| candidate.score.total > best.score.total - CLOSE_MAX_SCORE_LOSS;
+        let close = self.candidates.iter().take(MAX_CLOSE).take_while(is_close).count();
+        poses_of(&self.candidates[..round.keep.max(close).min(self.candidates.len())])
     }
 
-    /// Ends the last round, which keeps the scores of the ranking: scores of different grids are not comparable.
+    /// Ends the last round: of the polished poses, that which explains the details best comes first. All keep the scores of the
+    /// ranking, because scores of different grids are not comparable.
     fn end_polish(&mut self, results: Vec<Candidate>) -> Vec<CropPose> {
-        for (candidate, polished) in self.candidates.iter_mut().zip(results) {
+        let (mut best, mut most) = (0, f32::NEG_INFINITY);
+        for (k, (candidate, polished)) in self.candidates.iter_mut().zip(results).enumerate() {
             candidate.pose = polished.pose;
             candidate.converged |= polished.converged;
+            let lead = if k == 0 { MIN_DETAIL_GAIN } else { 0.0 };
+            if polished.score.total + lead > most {
+                (best, most) = (k, polished.score.total + lead);
+            }
         }
+        self.candidates.get_mut(..=best).into_iter().for_each(|ahead| ahead.rotate_right(1));
         Vec::new()
     }
 
