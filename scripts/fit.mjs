@@ -22,6 +22,8 @@ import { reliability, reliabilityHeads } from "./record/summary.mjs";
 
 /** The index of the margin among the features. */
 const MARGIN = 3;
+/** The logarithm of the odds between two poses at a margin of 1: `NOISE`, a 32-bit number, over `DROP`. */
+const RIVAL_LOG_ODDS = Math.fround(0.15) / 0.01;
 /** Weight of the penalty on slopes, which keeps them finite where the features separate right from wrong. */
 const PENALTY = 1e-3;
 const MAX_STEPS = 100;
@@ -76,8 +78,11 @@ function featuresOf({ features }, { noise, scale, rotationDeg, misfit, minMisfit
 /** @param {readonly number[]} a @param {readonly number[]} b */
 const dot = (a, b) => a.reduce((sum, x, i) => sum + x * (b[i] ?? 0), 0);
 
+const logistic = (/** @type {number} */ logOdds) => 1 / (1 + Math.exp(-logOdds));
+
 /** @param {readonly number[]} features @param {Line} line */
-const probability = (features, { intercept, slopes }) => 1 / (1 + Math.exp(-dot(features, slopes) - intercept));
+const probability = (features, { intercept, slopes }) =>
+  logistic(dot(features, slopes) + intercept) * logistic(RIVAL_LOG_ODDS * (features[MARGIN] ?? 0));
 
 /**
  * Logistic regression by Newton's method, on features of mean 0 and variance 1. The same rows give the same line.
@@ -116,7 +121,7 @@ function newtonStep(rows, labels, weights) {
     Array.from({ length: size + 1 }, (_, k) => (k === size ? -penalty(j) * weight : j === k ? penalty(j) : 0)),
   );
   for (const [i, row] of rows.entries()) {
-    const p = 1 / (1 + Math.exp(-dot(row, weights)));
+    const p = logistic(dot(row, weights));
     for (const [j, equation] of system.entries()) {
       const x = row[j] ?? 0;
       for (let k = 0; k < size; k++) equation[k] = (equation[k] ?? 0) + p * (1 - p) * x * (row[k] ?? 0);

@@ -6,7 +6,7 @@
 //! agreement of independent terms, and how sharply the score falls around the pose.
 
 use super::choice::CORRELATION_PER_SCORE;
-use crate::precise::scoring::conditioning::Conditioning;
+use crate::precise::scoring::conditioning::{Conditioning, DROP};
 use crate::precise::scoring::score::NOISE;
 use crate::precise::search::ranking::Candidate;
 use crate::report::Alternative;
@@ -75,19 +75,24 @@ pub(crate) fn shape_confidence(
     pose_probability(best, margin, conditioning)
 }
 
-/// The same, given the lead over the next best placement, of which no more than [`NOISE`] counts.
+/// The same, given the lead over the next best placement, of which no more than [`NOISE`] counts. Of two placements that score
+/// the same, either may be right: the odds between them grow with the lead in units of [`DROP`], the score of one deviation.
 pub(crate) fn pose_probability(best: &Candidate, lead: f64, conditioning: Option<&Conditioning>) -> f64 {
     let Some(conditioning) = conditioning else { return 0.0 };
-    let margin = lead.min(f64::from(NOISE));
+    let margin = lead.clamp(0.0, f64::from(NOISE));
     let log = |x: f64, [low, high]: [f64; 2]| libm::log(x.max(low).min(high));
     let features = [
         f64::from(best.score.overlap),
         f64::from(best.score.depth),
         f64::from(best.score.outline),
-        margin.max(0.0) / f64::from(NOISE),
+        margin / f64::from(NOISE),
         log(conditioning.scale, SCALE),
         log(conditioning.rotation.0.to_degrees(), ROTATION_DEG),
     ];
     let logit = features.iter().zip(SLOPES).map(|(x, slope)| x * slope).sum::<f64>() + INTERCEPT;
-    1.0 / (1.0 + libm::exp(-logit))
+    logistic(logit) * logistic(margin / DROP)
+}
+
+fn logistic(log_odds: f64) -> f64 {
+    1.0 / (1.0 + libm::exp(-log_odds))
 }
