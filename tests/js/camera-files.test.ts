@@ -91,6 +91,31 @@ test("a camera's size, depth scale and field of view are those of the file", asy
   assert.deepEqual((await readCamera({ ...isaac, cameraFisheyeMaxFOV: 200 })).fx, 600);
 });
 
+test("pixels of renderers and of intrinsics in one side are square", async () => {
+  const sensor = { lens: 45, sensor_width: 36, sensor_height: 24 };
+  const normal = { fx: 0.9375, fy: 0.953125, cx: 0.5, cy: 0.375 };
+  const cases: [object, [fx: number, fy: number], RegExp | undefined][] = [
+    [sensor, [800, 800], /36 × 24 .* squares, and its width counted/],
+    [{ ...sensor, sensor_fit: "AUTO" }, [800, 800], undefined],
+    [{ ...sensor, sensor_fit: "VERTICAL" }, [900, 900], undefined],
+    [{ ...sensor, sensor_height: 27 }, [800, 800], undefined],
+    [
+      { ...sensor, projection_matrix: [1.875, 0, 0, 0, 0, 2.5, 0, 0, 0, 0, -1, -1, 0, 0, -1, 0] },
+      [600, 600],
+      undefined,
+    ],
+    [normal, [600, 610], /about equal: both were read as parts of 640 pixels/],
+    [{ ...normal, cy: 0.5 }, [600, 457.5], /would not be square/],
+  ];
+  for (const [file, focal, message] of cases) {
+    const { fx, fy, doubts = [] } = await readCamera(file, size);
+    assert.deepEqual([fx, fy], focal, JSON.stringify(file));
+    const about = doubts.filter((doubt) => /square/.test(doubt) || /about equal/.test(doubt));
+    assert.equal(about.length, message === undefined ? 0 : 1);
+    assert.match(about[0] ?? "", message ?? /^$/);
+  }
+});
+
 test("a unit that may be another one is doubted", async () => {
   const cases: [Record<string, unknown>, number, RegExp][] = [
     [{ ...realSense, depth_scale: 1 }, 0.001, /depth_scale 1 .* ppx/],

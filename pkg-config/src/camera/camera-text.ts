@@ -68,7 +68,11 @@ function cameraText(text: string): unknown {
 
 /** The content of a text in the form that it has. */
 function textOfForms(text: string): unknown {
-  const content = text.replace(/^%YAML.*$/gm, "").replace(/(^|\s)(#|\/\/).*$/gm, "");
+  const content = text
+    .replace(/^%YAML.*$/gm, "")
+    .replace(/(^|\s)(#|\/\/).*$/gm, "")
+    // A name and its numbers, without a sign between them.
+    .replace(/^([A-Za-z_]\w*)[ \t]+(?=[-+.\d][-+.\de\s]*$)/gm, "$1: ");
   return (
     ofXml(text) ??
     ofPython(content) ??
@@ -80,9 +84,10 @@ function textOfForms(text: string): unknown {
 }
 
 /** Numbers with spaces, commas, semicolons or brackets between them, also as NumPy prints them. */
-function numbersIn(text: string): number[] | undefined {
+function numbersIn(whole: string): number[] | undefined {
+  const text = whole.replace(/, *(?:device|grad_fn|requires_grad)=[^,)]*/g, "");
   const rest = text.replace(
-    new RegExp(`${numeral}${ending}|\\b(?:np|numpy|array|matrix|dtype|float\\d*)\\b|[\\s,;()[\\]=.]`, "gi"),
+    new RegExp(`${numeral}${ending}|\\b(?:np|numpy|array|matrix|tensor|dtype|float\\d*)\\b|[\\s,;()[\\]=.]`, "gi"),
     "",
   );
   if (rest !== "") return undefined;
@@ -93,18 +98,26 @@ function numbersIn(text: string): number[] | undefined {
 /** A matrix, with the baseline of a pair of cameras behind it or not; four numbers; or these with the size of the image. */
 function ofNumbers(text: string): unknown {
   // Spreadsheets name their columns.
-  const header = /^[ \t]*f_?x\W+f_?y\W+c_?x\W+c_?y\W*$/im.exec(text)?.[0] ?? "";
+  const header = /^\s*"?[A-Za-z_]\w*"?(?:[\t ,;]+"?[A-Za-z_]\w*"?)+[\t ]*$/m.exec(text)?.[0] ?? "";
+  const columns = header.match(/\w+/g) ?? [];
   const numbers = numbersIn(text.replace(header, ""));
   if (numbers === undefined) return undefined;
+  if (columns.length > 0) {
+    const entries = columns.map((name, i) => [name, numbers[i]]);
+    return columns.length === numbers.length ? Object.fromEntries(entries) : undefined;
+  }
   const [a = 0, b = 0, c = 0, d = 0, e = 0, f = 0] = numbers;
   // FoundationStereo writes the baseline in a second line.
   if (numbers.length === 10 && numbers[8] === 1) return { K: numbers.slice(0, 9) };
   if (numbers.length !== 6) return numbers;
-  const isWithin = (cx: number, cy: number, width: number, height: number) =>
-    [cx / width, cy / height].every((place) => place > 0.2 && place < 0.8) && width % 1 === 0 && height % 1 === 0;
-  // ARKitScenes' .pincam has the size first.
-  if (isWithin(e, f, a, b)) return { width: a, height: b, fx: c, fy: d, cx: e, cy: f };
-  return isWithin(c, d, e, f) ? { fx: a, fy: b, cx: c, cy: d, width: e, height: f } : numbers;
+  const offCentre = (cx: number, cy: number, width: number, height: number) =>
+    width % 1 === 0 && height % 1 === 0 ? Math.max(Math.abs(cx / width - 0.5), Math.abs(cy / height - 0.5)) : 1;
+  // ARKitScenes' .pincam has the size first, H2O's text behind the intrinsics.
+  const [before, behind] = [offCentre(e, f, a, b), offCentre(c, d, e, f)];
+  if (Math.min(before, behind) > 0.3) return numbers;
+  return before < behind
+    ? { width: a, height: b, fx: c, fy: d, cx: e, cy: f }
+    : { fx: a, fy: b, cx: c, cy: d, width: e, height: f };
 }
 
 /** A dictionary as Python prints it, or a mapping of YAML in braces. */

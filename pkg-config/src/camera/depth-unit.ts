@@ -33,7 +33,17 @@ const names: Record<string, number> = {
   mm: 1e-3,
   millimeter: 1e-3,
   millimetre: 1e-3,
+  um: 1e-6,
+  micrometer: 1e-6,
+  micrometre: 1e-6,
 };
+
+/** The metres in a text: `mm`, `0.1 mm`, `millimeters`. */
+function lengthIn(text: string): number | undefined {
+  const [, number = "1", name = ""] = /^(\d+(?:\.\d+)?)? ?([a-z]+?)s?$/.exec(text.trim().toLowerCase()) ?? [];
+  const metres = names[name];
+  return metres === undefined || Number(number) === 0 ? undefined : Number(number) * metres;
+}
 
 type Reading = "metresPerUnit" | "unitsPerMetre";
 
@@ -60,8 +70,7 @@ export function unitOf(facts: readonly Fact[], { file }: CameraFileNames): State
 
 function unitOfFact({ meaning, key, value }: Fact, facts: readonly Fact[], file: string): StatedUnit | undefined {
   if (!unitMeanings.has(meaning)) return undefined;
-  const named =
-    meaning === "unit" && typeof value === "string" ? names[value.toLowerCase().replace(/s$/, "")] : undefined;
+  const named = meaning === "unit" && typeof value === "string" ? lengthIn(value) : undefined;
   if (named !== undefined) return { metres: named, key };
   if (!isNumber(value) || value <= 0) {
     if (meaning === "scale") return undefined;

@@ -38,18 +38,53 @@ export function imageCamera(
   image: ImageSize,
 ): ImageCamera {
   const camera = inPixels(stated, own ?? image);
-  if (own !== undefined) return scaledCamera(argument, camera, own, image);
+  const fitted = own === undefined ? unsizedCamera(camera, image) : scaledCamera(argument, camera, own, image);
+  return { ...fitted, doubts: [...doubtOfSides(stated, own ?? image), ...fitted.doubts] };
+}
+
+/** Intrinsics of an image whose size is not stated beside them. */
+function unsizedCamera(camera: Pinhole, image: ImageSize): ImageCamera {
   if (isTurned(camera, image)) return turnedCamera(camera, image);
   const doubt = doubtOfSize(camera, image);
   return { camera, doubts: doubt === undefined ? [] : [doubt] };
 }
 
+const isNormalised = ({ fx, fy, cx, cy }: Pinhole) =>
+  Math.max(cx, cy) < MAX_NORMALISED.center && Math.max(fx, fy) < MAX_NORMALISED.focal;
+
 /** Intrinsics in pixels. Those in image sizes, as MoGe writes them, count from the outer edge of the first pixel. */
 export function inPixels({ fx, fy, cx, cy }: Pinhole, size: ImageSize | undefined): Pinhole {
-  const isNormalised = Math.max(cx, cy) < MAX_NORMALISED.center && Math.max(fx, fy) < MAX_NORMALISED.focal;
-  if (!isNormalised || size === undefined) return { fx, fy, cx, cy };
+  if (!isNormalised({ fx, fy, cx, cy }) || size === undefined) return { fx, fy, cx, cy };
+  const [x, y] = sidesOf({ fx, fy, cx, cy }, size);
+  return { fx: fx * x, fy: fy * y, cx: cx * x - 0.5, cy: cy * y - 0.5 };
+}
+
+/** Difference of focal lengths, as a logarithm, up to which pixels are about square. */
+const SQUARE = 0.05;
+
+/** Whether equal focal lengths in image sizes belong to pixels that are not square, unless both are in one side. */
+const isOfOneSide = ({ fx, fy }: Pinhole, { width, height }: ImageSize) =>
+  Math.abs(Math.log(fx / fy)) < SQUARE && Math.abs(Math.log(width / height)) > SQUARE;
+
+/** The sides of the image in which intrinsics are: each axis in its own, or both in one, by which the principal point is in the middle. */
+function sidesOf(camera: Pinhole, size: ImageSize): readonly [number, number] {
   const { width, height } = size;
-  return { fx: fx * width, fy: fy * height, cx: cx * width - 0.5, cy: cy * height - 0.5 };
+  const own = [width, height] as const;
+  if (!isOfOneSide(camera, size)) return own;
+  const distance = ([x, y]: readonly [number, number]) =>
+    Math.max(Math.abs((camera.cx * x) / width - 0.5), Math.abs((camera.cy * y) / height - 0.5));
+  const others = [[width, width] as const, [height, height] as const];
+  return others.reduce((best, sides) => (distance(sides) < distance(best) ? sides : best), own);
+}
+
+/** Why intrinsics in image sizes may be in other sides. */
+function doubtOfSides(stated: Pinhole, size: ImageSize): string[] {
+  if (!isNormalised(stated) || !isOfOneSide(stated, size)) return [];
+  const [x, y] = sidesOf(stated, size);
+  const read = x === y ? `both were read as parts of ${x} pixels` : "the pixels would not be square";
+  return [
+    `The focal lengths, in sizes of an image of ${size.width} × ${size.height} pixels, are about equal: ${read}. Write the intrinsics in pixels.`,
+  ];
 }
 
 /** Intrinsics for an image that is `image` instead of `own` pixels large. */

@@ -26,6 +26,7 @@ interface Read {
   skewPx?: number;
   /** The key beside which there is no principal point. */
   centredBy?: string | undefined;
+  doubts?: readonly string[];
 }
 
 /** Keys of programs that count pixels from the edge of the first one; OpenCV's centre of it is at 0. */
@@ -56,7 +57,7 @@ export function intrinsicsOf(
   }
   const size = sizeOf(facts);
   const read = pinholeIn(facts, size ?? image, names);
-  const { camera, skewPx = 0, centredBy } = read;
+  const { camera, skewPx = 0, centredBy, doubts = [] } = read;
 
   const has = (keys: RegExp) => facts.some(({ key }) => keys.test(key));
   const shift = centredBy !== undefined ? 0 : has(fromEdge) ? 0.5 : has(fromOne) ? 1 : 0;
@@ -67,7 +68,7 @@ export function intrinsicsOf(
   const doubt = `${names.file}: beside ${centredBy}, no principal point is stated: the middle of the image was used. Write cx and cy.`;
   return {
     ...regionOf(facts, placed, size, image),
-    doubts: centredBy === undefined || isCentred.test(centredBy) ? [] : [doubt],
+    doubts: [...doubts, ...(centredBy === undefined || isCentred.test(centredBy) ? [] : [doubt])],
     distortions: (ofImage, imageSize) => [...skewed(skewPx), ...distorted(facts, model, ofImage, imageSize)],
   };
 }
@@ -94,7 +95,7 @@ function pinholeIn(facts: readonly Fact[], size: ImageSize | undefined, names: C
       skewPx: Math.abs(((number("skew") ?? 0) * cy) / fy),
     };
   }
-  const matrix = factOf(facts, "matrix");
+  const matrix = factOf(facts, "matrix", "projection");
   if (matrix !== undefined) return matrixOf(matrix, names);
 
   const alone = cx === undefined && cy === undefined ? (factOf(facts, "fx") ?? focal) : undefined;
@@ -107,10 +108,13 @@ function pinholeIn(facts: readonly Fact[], size: ImageSize | undefined, names: C
   if (size === undefined) throw withoutSize(alone === undefined ? "a field of view" : `${found.key} alone`, names);
   const stated = lengths ?? (fx !== undefined && fy !== undefined ? [fx, fy] : undefined);
   const isFocal = alone !== undefined && stated !== undefined;
-  const { x, y } = isFocal ? focalLengths(found.key, stated, sensor, size, names) : focalsOfAngles(facts, size, names);
+  const focals: Focals = isFocal
+    ? focalLengths(found.key, stated, sensor && { ...sensor, fit: factOf(facts, "fit")?.value }, size, names)
+    : focalsOfAngles(facts, size, names);
+  const { x, y, doubts = [] } = focals;
   const middle = { cx: cx ?? 0.5 * (size.width - 1), cy: cy ?? 0.5 * (size.height - 1) };
   const camera = checkedPinhole(names.file, { fx: x ?? y, fy: y ?? x, ...middle });
-  return { camera, centredBy: cx === undefined ? found.key : undefined };
+  return { camera, centredBy: cx === undefined ? found.key : undefined, doubts };
 }
 
 /** The intrinsics in four numbers, or in a matrix by rows or by columns. */
@@ -130,15 +134,35 @@ function matrixOf({ key, value }: Fact, names: CameraFileNames): Read {
   return skewedMatrix(names.file, isByColumns ? transposed : square);
 }
 
+/** Focal lengths across the image and down. */
+interface Focals {
+  x?: number | undefined;
+  y?: number | undefined;
+  doubts?: readonly string[];
+}
+
+/** Difference of focal lengths, as a logarithm, from which pixels are not square. */
+const NOT_SQUARE = 0.01;
+
 /** Focal lengths in pixels alone, as Depth Pro states them, or in the unit of the sensor's size. */
 function focalLengths(
   key: string,
   [x, y]: readonly [number, number],
-  sensor: Partial<Record<"x" | "y", number>> | undefined,
+  sensor: (Partial<Record<"x" | "y", number>> & { fit: unknown }) | undefined,
   { width, height }: ImageSize,
   { file }: CameraFileNames,
-) {
-  if (sensor !== undefined) return { x: sensor.x && (x / sensor.x) * width, y: sensor.y && (y / sensor.y) * height };
+): Focals {
+  if (sensor !== undefined) {
+    const focals = { x: sensor.x && (x / sensor.x) * width, y: sensor.y && (y / sensor.y) * height };
+    if (!focals.x || !focals.y || x !== y || Math.abs(Math.log(focals.x / focals.y)) < NOT_SQUARE) return focals;
+    // Renderers have square pixels, and ignore the side of the sensor that doesn't fit: mostly the height.
+    const isByHeight = /^vertical$/i.test(`${sensor.fit}`);
+    const isByLonger = /^auto$/i.test(`${sensor.fit}`) && height > width;
+    const focal = isByHeight ? focals.y : isByLonger ? (focals.x * height) / width : focals.x;
+    const side = isByHeight ? "height" : "width";
+    const doubt = `${file}: a sensor of ${sensor.x} × ${sensor.y} has another shape than the image of ${width} × ${height}: pixels were taken for squares, and its ${side} counted. Write fx and fy in pixels.`;
+    return { x: focal, y: focal, doubts: sensor.fit === undefined ? [doubt] : [] };
+  }
   if (Math.max(x, y) > 0.125 * Math.max(width, height)) return { x, y };
   const remedy = "Write the focal lengths in pixels as fx and fy, or the width of the sensor as sensor_width.";
   throw failure("INVALID_CAMERA", file, `${key} ${x}, perhaps in millimetres`, "pixels", remedy);

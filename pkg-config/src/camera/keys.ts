@@ -2,9 +2,9 @@
 
 /** The meaning of a key. */
 export type Meaning =
-  | ("fx" | "fy" | "cx" | "cy" | "focal" | "center" | "matrix" | "skew" | "focalUncertainty")
+  | ("fx" | "fy" | "cx" | "cy" | "focal" | "center" | "matrix" | "projection" | "skew" | "focalUncertainty")
   | ("width" | "height" | "size" | "shape" | "region" | "binningX" | "binningY")
-  | ("fovX" | "fovY" | "fov" | "apertureX" | "apertureY" | "aperture")
+  | ("fovX" | "fovY" | "fov" | "apertureX" | "apertureY" | "aperture" | "fit")
   | ("metresPerUnit" | "unitsPerMetre" | "depthScale" | "scale" | "unit")
   | ("distortion" | "coefficient" | "model" | "up");
 
@@ -13,10 +13,10 @@ export type Meaning =
  * also knows them behind `camera`, and beside the name of one of several cameras.
  */
 const table = `
-fx | fx flx focalx focallengthx fu | RealSense, Polycam, nerfstudio, instant-ngp, ORB-SLAM, ZED, Replica, DOPE
-fy | fy fly focaly focallengthy fv | RealSense, Polycam, nerfstudio, instant-ngp, ORB-SLAM, ZED, Replica, DOPE
-cx | cx ppx u0 cu mx principalpointx | RealSense, nerfstudio, ScanNet
-cy | cy ppy v0 cv my principalpointy | RealSense, nerfstudio, ScanNet
+fx | fx flx focalx focallengthx fu fxpx alphau | RealSense, Polycam, nerfstudio, instant-ngp, ORB-SLAM, ZED, Replica, DOPE
+fy | fy fly focaly focallengthy fv fypx alphav | RealSense, Polycam, nerfstudio, instant-ngp, ORB-SLAM, ZED, Replica, DOPE
+cx | cx ppx u0 cu mx principalpointx px x0 ox cxpx centerx | RealSense, nerfstudio, ScanNet
+cy | cy ppy v0 cv my principalpointy py y0 oy cypx centery | RealSense, nerfstudio, ScanNet
 focal | f focal focals focallength focallengths | DUSt3R, Unity, MATLAB, Isaac Sim, Metashape
 focal | focalpx focallengthpx fpx fc lens focallengthmm | Depth Pro, Blender
 focalUncertainty | focaluncertainty |
@@ -28,7 +28,7 @@ skew | skew s skx | NDDS, MATLAB
 width | w width imagewidth imgwidth resx resolutionx resolutionwidth mwidth | RealSense, Polycam, ROS, Open3D, Record3D, NDDS
 height | h height imageheight imgheight resy resolutiony resolutionheight mheight | RealSense, Polycam, ROS, Open3D, Record3D, NDDS
 size | size imagesize imgsize resolution imageresolution | Kalibr, ZED, Unity
-size | renderproductresolution referencedimensions intrinsicmatrixreferencedimensions | Isaac Sim, ARKit
+size | renderproductresolution imagedimensions imagedims referencedimensions intrinsicmatrixreferencedimensions | Isaac Sim, ARCore, ARKit
 shape | shape imageshape imgshape hw imagehw |
 region | roi | ROS
 binningX | binningx | ROS
@@ -41,11 +41,12 @@ fov | fov fovdeg fovrad fieldofview | CARLA, three.js, Unity
 apertureX | aperturex horizontalaperture sensorwidth filmwidth | USD, Blender
 apertureY | aperturey verticalaperture sensorheight filmheight | USD, Blender
 aperture | aperture sensorsize | Isaac Sim
+fit | sensorfit gatefit | Blender, Unity
 metresPerUnit | depthunitscalefactor integerdepthscale depthtometers depthtometres | nerfstudio, NeRFCapture
 unitsPerMetre | factordepth depthfactor pngdepthscale depthmapfactor rgbddepthmapfactor | GraspNet, YCB-Video, NICE-SLAM, ORB-SLAM
 unitsPerMetre | depthscalingfactor depthshift mshift depthdivisor unitspermeter unitspermetre | ScanNet
-depthScale | depthscale depthscalefactor depthunitscale depthmultiplier | BOP, RealSense, Open3D
-scale | scale | Replica
+depthScale | depthscale depthscalefactor depthunitscale depthmultiplier depthscaling depthprecision | BOP, RealSense, Open3D
+scale | scale scalingfactor factor | Replica, TUM
 unit | depthunit depthunits | RealSense
 distortion | d dist disto distortion kc coef coeffs coefficients | ROS, RealSense, ZED
 distortion | radialdistortion tangentialdistortion lensdistortionlookuptable | MATLAB, ARKit
@@ -71,11 +72,11 @@ export const keyTable = table
 const others = {
   poses: `*extrinsic* *pose *poses pose* *transform* *quaternion* *w2c* *c2w* *m2c* *world* *viewmatrix *lookat r t p rt q
     qvec tvec rvec rvecs tvecs t?? tic tbs tx ty tz qw qx qy qz tcam* tcn* tbc* tbody* location* position* *translation*
-    *rectif* *projectionmatrix *homography* *essentialmatrix *fundamentalmatrix elev viewlevel sphere* r?rect rrect* tr
+    *rectif* *projectionmatrix *homography* *essentialmatrix *fundamentalmatrix elev viewlevel sphere* r?? r?rect rrect* srect* tr
     axisalign* trvelo* trimu* trcam*`,
   lists: "rotation* orientation* projection cameraprojection offset center",
   identity: `*time* *stamp* *serial* *version* *id *ids *uuid *name* *index *idx *count *number num* *date *fps* framerate
-    rate seq header frame device* board* product* batch* hardware* misc* unit units *socket mode *path *neighbors *quality
+    rate* seq header frame device* board* product* batch* hardware* misc* unit units *socket mode *path *neighbors *quality
     *keyframe*`,
   stereo: "*baseline* bf *thdepth doffs ndisp vmin vmax isint disp* stereo* *stereo",
   scene: `*near *far *nearfar *clip* aspect aspectratio aabb* *scenescale *bounds *sceneunit fromna keepcolmapcoords
@@ -85,7 +86,7 @@ const others = {
     diagonalfov`,
   calibration: `*reprojection* rms ret *error* square* pattern* flags nframes nrofframes imagepoints gridpoints objectpoints
     *covariance* *std *stddev estimate* perview* perframe* metricradius *lookuptablesize lensdistortioncenter
-    inverselensdistortionlookuptable pixelsize dw dh typeid dt rows cols`,
+    inverselensdistortionlookuptable pixelsize corner* dw dh typeid dt rows cols`,
   sensors: `*imu* *accel* *gyro* *magneto* *noise* *walk *housing* *battery* *usec *bpp *bytes* rgb bgr camerafisheye*
     fisheyepoly* fisheyemax* fisheyenominal* fisheyeoptical*`,
   programs: `viewer* mframes* newwidth newheight orbextractor* system* loop* mapping tracking training optimization

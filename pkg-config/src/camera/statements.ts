@@ -3,6 +3,7 @@ import { failure } from "../values/error.js";
 import { isNumber } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
 import { isOther, type Meaning, meaningOf } from "./keys.js";
+import { projectionOf } from "./projection.js";
 
 /** The names of a camera file and of its options in errors. */
 export interface CameraFileNames {
@@ -102,10 +103,12 @@ function addTo(node: Node, key: string, value: unknown, path: string): void {
       : listed(inner as unknown[], names, path);
     for (const part of parts) node.children.push(part);
   } else {
-    const meaning = known?.meaning ?? (looksLikeMatrix(numbersOf(inner) ?? []) ? "matrix" : undefined);
+    const numbers = numbersOf(inner) ?? [];
+    const projection = projectionOf(numbers);
+    const meaning = projection ? "projection" : (known?.meaning ?? (looksLikeMatrix(numbers) ? "matrix" : undefined));
     if (meaning === undefined && (!hasNumbers(inner) || isZero(inner))) return;
     const owner = known?.camera === undefined ? node : childOf(node, known.camera);
-    owner.facts.push({ meaning, key, path, value: inner });
+    owner.facts.push({ meaning, key, path, value: projection ?? inner });
   }
 }
 
@@ -137,9 +140,9 @@ function childOf(node: Node, name: string): Node {
   return child;
 }
 
-/** Facts that make an object a camera: numbers in pixels, else a field of view. */
+/** Facts that make an object a camera: numbers in pixels, else a field of view or a projection. */
 const strong: ReadonlySet<Meaning | undefined> = new Set<Meaning>(["fx", "focal", "matrix"]);
-const weak: ReadonlySet<Meaning | undefined> = new Set<Meaning>(["fovX", "fovY", "fov"]);
+const weak: ReadonlySet<Meaning | undefined> = new Set<Meaning>(["fovX", "fovY", "fov", "projection"]);
 
 /** Facts of the objects around a camera that count for it, with a meaning and without: more are in no file of cameras. */
 const MAX_SHARED = 32;
