@@ -38,7 +38,7 @@ const layouts: readonly Layout[] = [
     name: "COCO (a file, annotations, or a mask), SAM's list of masks",
     keys: `segmentation size counts id image_id category_id category bbox area iscrowd score predicted_iou point_coords
       stability_score crop_box label class_name attributes keypoints num_keypoints images annotations categories info
-      licenses ignore caption bbox_mode image`,
+      licenses ignore caption bbox_mode image time scene_id image_path box_format img_width img_height`,
     find(json) {
       if (isRecord(json) && Array.isArray(json.annotations)) return json.annotations;
       if (isCorners(json)) return [{ segmentation: [json] }];
@@ -202,7 +202,10 @@ function chosen(argument: string, entries: readonly Entry[], index: unknown): En
   const list = [...names, ...(entries.length > LISTED ? ["…"] : [])].join("; ");
   const found = entries.length === 0 ? "JSON without a mask" : `${entries.length} masks (${list})`;
   const expected = index === undefined ? "one mask" : `one at place ${index}`;
-  const remedy = "Pass the place of the object's mask in the file, from 0, as `maskIndex`.";
+  const remedy =
+    entries.length === 0
+      ? "Its entries may have boxes alone: pass a file with outlines or run lengths, or a PNG."
+      : "Pass the place of the object's mask in the file, from 0, as `maskIndex`.";
   throw failure("INVALID_ARGUMENT", argument, found, expected, remedy);
 }
 
