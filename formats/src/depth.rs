@@ -27,7 +27,7 @@ enum Format {
 }
 
 /// The first bytes of each format.
-const SIGNATURES: [(&[u8], Format); 12] = [
+const SIGNATURES: [(&[u8], Format); 14] = [
     (b"PK\x03\x04", Format::Npz),
     // An archive without entries.
     (b"PK\x05\x06", Format::Npz),
@@ -41,6 +41,8 @@ const SIGNATURES: [(&[u8], Format); 12] = [
     (b"PF\n", Format::Pfm),
     (b"Pf\r", Format::Pfm),
     (b"PF\r", Format::Pfm),
+    (b"Pf ", Format::Pfm),
+    (b"PF ", Format::Pfm),
     (npy::MAGIC, Format::Npy),
 ];
 

@@ -38,7 +38,7 @@ const MAX_BLOCK_BYTES: usize = 1 << 26;
 pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
     let reader = Reader::read_from_buffered(io::Cursor::new(bytes), false)
         .map_err(|error| new_compression(bytes).unwrap_or_else(|| broken(&error)))?;
-    let (layer, channels) = find(reader.headers())?;
+    let Found { layer, channels, unread } = find(reader.headers())?;
     let Some(header) = reader.headers().get(layer) else { return Err(no_depth(reader.headers())) };
     let picture = Picture::of(header)?;
     let of_layer = |&channel: &usize| header.channels.list.get(channel);
@@ -86,11 +86,12 @@ pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKi
     let bits = if sample == SampleType::F16 { 16 } else { 32 };
     let stored = Stored { width: picture.width, height: picture.height, bits, is_integer: sample == SampleType::U32 };
     let value = |z: f32| if f64::from(z) >= NOTHING { f64::NAN } else { f64::from(z) };
-    match images.as_slice() {
+    let image = match images.as_slice() {
         [x, y, z] => point_map::read(&stored, options, kind, &|i| [x, y, z].map(|values| value(values[i]))),
         [values] => stored.read(options, kind, &|i| value(values[i])),
         _ => Err(no_depth(&meta.headers)),
-    }
+    }?;
+    Ok(DepthImage { unread, ..image })
 }
 
 /// The display window, which the stored pixels may cover in part, or exceed.
@@ -164,8 +165,16 @@ impl Picture {
     }
 }
 
-/// The layer and the channel of depth, or the three channels of points, which may be named as colours.
-fn find(headers: &[Header]) -> Result<(usize, Vec<usize>)> {
+/// The channels that are read.
+struct Found {
+    layer: usize,
+    /// The channel of depth, or the three channels of points, which may be named as colours.
+    channels: Vec<usize>,
+    /// Other channels of depth.
+    unread: Vec<String>,
+}
+
+fn find(headers: &[Header]) -> Result<Found> {
     let names_of = |header: &Header| -> Vec<String> {
         header.channels.list.iter().map(|channel| channel.name.to_string().to_ascii_lowercase()).collect()
     };
@@ -185,13 +194,20 @@ fn find(headers: &[Header]) -> Result<(usize, Vec<usize>)> {
         let other = if pass.is_empty() { "x".to_owned() } else { format!("{pass}.x") };
         !names.contains(&other) && !pass.ends_with("mist")
     };
-    if let Some((layer, channel)) = places(&DEPTH_NAMES).into_iter().find(is_depth) {
-        return Ok((layer, vec![channel]));
+    // Blender's for its denoiser is another form of the depth.
+    let is_copy = |&(layer, channel): &(usize, usize)| layers[layer][channel].contains("denoising");
+    let mut depths: Vec<(usize, usize)> = places(&DEPTH_NAMES).into_iter().filter(is_depth).collect();
+    depths.sort_by_key(is_copy);
+    if let Some((&(layer, channel), others)) = depths.split_first() {
+        let names = others.iter().filter(|other| !is_copy(other)).map(|&(layer, channel)| &layers[layer][channel]);
+        let unread = names.map(|name| format!("the channel `{name}` of the depth file")).collect();
+        return Ok(Found { layer, channels: vec![channel], unread });
     }
+    let found = |(layer, channels)| Found { layer, channels, unread: Vec::new() };
     if let ([only], &[(layer, channel)]) = (layers.as_slice(), places(&SINGLE_NAMES).as_slice())
         && only.len() == 1
     {
-        return Ok((layer, vec![channel]));
+        return Ok(found((layer, vec![channel])));
     }
     let of_points = POINT_NAMES.iter().find_map(|names| {
         let found: Vec<(usize, usize)> = names.iter().flat_map(|name| places(&[name])).collect();
@@ -200,7 +216,7 @@ fn find(headers: &[Header]) -> Result<(usize, Vec<usize>)> {
         let is_all = names[0] == "x" || (layers.len() == 1 && layers[layer].len() <= 4);
         (layer == of_y && layer == of_z && is_all).then(|| (layer, vec![x, y, z]))
     });
-    of_points.ok_or_else(|| no_depth(headers))
+    of_points.map(found).ok_or_else(|| no_depth(headers))
 }
 
 fn no_depth(headers: &[Header]) -> Error {

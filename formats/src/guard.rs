@@ -98,7 +98,7 @@ pub(crate) fn pixel_count(argument: &str, width: usize, height: usize) -> Result
 
 /// Describes the start of an unrecognised file, for the error message.
 pub(crate) fn beginning(bytes: &[u8]) -> String {
-    const KNOWN: [(&[u8], &str); 10] = [
+    const KNOWN: [(&[u8], &str); 12] = [
         (b"\x89PNG\r\n\x1a\n", "a PNG image"),
         (b"\x93NUMPY", "a NumPy array"),
         (b"\xff\xd8\xff", "a JPEG image"),
@@ -109,6 +109,8 @@ pub(crate) fn beginning(bytes: &[u8]) -> String {
         (b"PK\x03\x04", "a ZIP archive (NPZ?)"),
         (b"\x1f\x8b", "a gzip stream"),
         (b"\x89HDF\r\n\x1a\n", "an HDF5 file"),
+        (b"version https://git-lfs", "a pointer of Git LFS: \"git lfs pull\" fetches the file"),
+        (b"<!DOCTYPE html", "an HTML page, which the server sent in place of the file"),
     ];
     if bytes.is_empty() {
         return "no bytes".into();

@@ -61,7 +61,8 @@ pub fn read_colored_mesh(bytes: &[u8], options: &MeshReadOptions<'_>) -> Result<
 }
 
 fn read(bytes: &[u8], options: &MeshReadOptions<'_>, content: Content) -> Result<ColoredMesh> {
-    match options.format.or_else(|| MeshFormat::sniff(bytes)) {
+    // Files are named wrongly more often than they begin wrongly.
+    match MeshFormat::sniff(bytes).or(options.format) {
         Some(MeshFormat::Gltf) => gltf::read_gltf(bytes, options, content),
         Some(MeshFormat::Obj) => obj::read_obj(bytes, options, content),
         Some(MeshFormat::Ply) => ply::read_ply(bytes, options, content),

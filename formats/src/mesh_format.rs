@@ -49,7 +49,7 @@ impl MeshFormat {
         if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
             return Some(Self::Ply);
         }
-        if stl::has_binary_length(bytes) || text.starts_with(b"solid") {
+        if stl::has_binary_length(bytes) || stl::begins_as_text(bytes) {
             return Some(Self::Stl);
         }
         let words = text::lines(text).filter_map(|line| text::words(line).next());
@@ -63,7 +63,7 @@ impl MeshFormat {
 /// Options of [`read_mesh`](crate::mesh::read_mesh).
 #[derive(Clone, Copy, Default)]
 pub struct MeshReadOptions<'a> {
-    /// The format; detected from the content if `None`.
+    /// The format of a file whose content does not tell it.
     pub format: Option<MeshFormat>,
     /// The external files, by URI or name as written in the mesh file; see [`external_resources`](crate::mesh::external_resources).
     pub resources: Option<Resources<'a>>,

@@ -67,6 +67,7 @@ impl Scalar {
 /// A property of an element.
 #[derive(Debug, Clone)]
 pub(crate) struct Property {
+    /// In lower case.
     pub name: Vec<u8>,
     /// The type of the length of a list property; `None` for a scalar.
     pub list_length: Option<Scalar>,
@@ -197,11 +198,13 @@ fn read_encoding(name: &[u8]) -> Result<Encoding> {
 fn read_property(words: &[&[u8]]) -> Option<Property> {
     match words {
         [b"list", length, scalar, name] => Some(Property {
-            name: name.to_vec(),
+            name: name.to_ascii_lowercase(),
             list_length: Some(Scalar::from_name(length)?),
             scalar: Scalar::from_name(scalar)?,
         }),
-        [scalar, name] => Some(Property { name: name.to_vec(), list_length: None, scalar: Scalar::from_name(scalar)? }),
+        [scalar, name] => {
+            Some(Property { name: name.to_ascii_lowercase(), list_length: None, scalar: Scalar::from_name(scalar)? })
+        }
         _ => None,
     }
 }

@@ -26,7 +26,7 @@ pub(crate) const TEXTURE_NUMBER: &[u8] = b"texnumber";
 const HARMLESS: &str = "nx ny nz normal_x normal_y normal_z normalx normaly normalz scalar_* tangent_* alpha a opacity \
     diffuse_alpha diffuse_coeff ambient_* specular_* reflect_coeff refract_coeff refract_index shininess confidence quality \
     intensity reflectance value curvature radius density flags flag selected visible label labels class classification \
-    category_id object_id objectId globalId NYU40 segment group id time std_dev area";
+    category_id object_id objectid globalid nyu40 segment group id time std_dev area";
 
 /// Elements of no matter: the edges of triangles that are faces, and the cameras of scanners or of a saved view.
 const HARMLESS_ELEMENTS: &str = "edge camera range_grid";

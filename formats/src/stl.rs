@@ -23,15 +23,19 @@ pub(crate) fn has_binary_length(bytes: &[u8]) -> bool {
     count.is_ok_and(|count| (count as usize).checked_mul(TRIANGLE_BYTES) == Some(cursor.remaining().len()))
 }
 
+/// Whether a file begins like the text form.
+pub(crate) fn begins_as_text(bytes: &[u8]) -> bool {
+    let text = unmarked(bytes).trim_ascii_start();
+    text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
+}
+
 /// Reads an STL. Vertices with equal coordinates are merged, without rounding.
 ///
 /// # Errors
 /// [`CorruptFile`](sim3align_runtime::error::ErrorCode::CorruptFile),
 /// [`FileTooLarge`](sim3align_runtime::error::ErrorCode::FileTooLarge) and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
 pub fn read_stl(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
-    let is_text = !has_binary_length(bytes)
-        && unmarked(bytes).trim_ascii_start().starts_with(b"solid")
-        && !bytes.iter().take(1024).any(|&b| b == 0);
+    let is_text = !has_binary_length(bytes) && begins_as_text(bytes) && !bytes.iter().take(1024).any(|&b| b == 0);
     if is_text { read_text(bytes) } else { read_binary(bytes, content) }
 }
 
@@ -39,6 +43,11 @@ fn read_binary(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
     let mut cursor = Cursor::new("mesh", bytes);
     let header = cursor.take(HEADER_BYTES)?;
     let count = cursor.u32_le()?;
+    let (stored, rest) = (cursor.remaining().len() / TRIANGLE_BYTES, cursor.remaining().len() % TRIANGLE_BYTES);
+    if rest == 0 && stored != count as usize {
+        let found = format!("an STL header that states {count} triangles, before the data of {stored}");
+        return Err(corrupt("mesh", found, "as many triangles as the header states"));
+    }
     let attributes = cursor
         .remaining()
         .chunks_exact(TRIANGLE_BYTES)

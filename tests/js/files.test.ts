@@ -100,12 +100,14 @@ test("meshes and splats in other formats are named, with a way to convert them",
     ["Kaydara FBX Binary", /FBX.*Blender/],
     ["BLENDER-v500", /Blender file/],
     ["<!DOCTYPE html>", /an HTML page.*response\.ok/],
+    ["version https://git-lfs.github.com/spec/v1\n", /Git LFS.*git lfs pull/],
     [gaussians, /3D Gaussians in a glTF file/],
   ];
   const placed = { scale: 1, rotation: [0, 0, 0, 1], translation: [0, 0, 0] } as const;
   for (const [beginning, found] of files) {
     const bytes = Buffer.from(beginning, "latin1");
-    await rejectsWith(() => readMesh(bytes), "UNSUPPORTED_FORMAT mesh", found);
+    for (const format of [undefined, "glb", "obj"] as const)
+      await rejectsWith(() => readMesh(bytes, { format }), "UNSUPPORTED_FORMAT mesh", found);
     await rejectsWith(() => placeSplats(bytes, placed), "UNSUPPORTED_FORMAT splats", found);
   }
   const compressed = Buffer.from("ply\nelement chunk 1\nelement vertex 1\nproperty uint packed_position\nend_header\n");

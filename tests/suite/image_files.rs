@@ -217,8 +217,14 @@ fn the_z_of_a_vector_is_no_depth() {
         (&["Layer.Combined.R", "Layer.Depth.Z", "Layer.Mist.Z"], 2.0),
         (&["B", "G", "R", "depth.Z"], 4.0),
     ] {
-        assert_eq!(metric(&exr_of(names)).unwrap().values.data(), [depth; 2], "{names:?}");
+        let read = metric(&exr_of(names)).unwrap();
+        assert_eq!((read.values.data(), read.unread.len()), ([depth; 2].as_slice(), 0), "{names:?}");
     }
+    let two = metric(&exr_of(&["A.Denoising Depth.Z", "A.Depth.Z", "B.Depth.Z"])).unwrap();
+    assert_eq!(
+        (two.values.data(), two.unread),
+        ([2.0; 2].as_slice(), vec!["the channel `b.depth.z` of the depth file".to_owned()])
+    );
     for names in [&["X", "Y", "Z"] as &[&str], &["N.X", "N.Y", "N.Z"], &["Layer.Mist.Z"]] {
         assert_eq!(metric(&exr_of(names)).map(drop), Err(ErrorCode::UnsupportedFormat), "{names:?}");
     }
@@ -226,7 +232,7 @@ fn the_z_of_a_vector_is_no_depth() {
 
 #[wasm_bindgen_test]
 fn lines_of_a_pfm_end_with_one_character_or_more() {
-    for header in ["Pf\n2 1\n-1\n", "Pf\r\n2 1\r\n-1.0\r\n", "Pf\n2 1 \n-1.0 \n"] {
+    for header in ["Pf\n2 1\n-1\n", "Pf\r\n2 1\r\n-1.0\r\n", "Pf\n2 1 \n-1.0 \n", "Pf 2 1 -1\n"] {
         // A value that begins with a space, and one that does not.
         let first = f32::from_le_bytes([0x20, 0x0a, 0x20, 0x40]);
         let bytes: Vec<u8> = header.bytes().chain([first, 3.0].into_iter().flat_map(f32::to_le_bytes)).collect();

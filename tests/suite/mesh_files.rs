@@ -88,6 +88,21 @@ fn ply_strips_and_both_zeros_of_stl_are_read() {
     assert_eq!(read_mesh(&longer, &as_stl).unwrap().triangles().len(), 80);
 }
 
+/// Names in capitals, and the content where the name of the file says another format.
+#[wasm_bindgen_test]
+fn capitals_and_the_content_of_a_file_count() {
+    let stl = solid(&[["0 0 0", "1 0 0", "1 1 0"]]).to_ascii_uppercase();
+    assert_eq!(read(&stl).unwrap().triangles().len(), 1);
+    let ply = header("ascii", "3", "1").replace("float x", "float X").replace("vertex_index", "Vertex_Index");
+    assert_eq!(read(ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").unwrap().triangles().len(), 1);
+    for format in ["glb", "obj", "ply", "stl"] {
+        let named = MeshReadOptions { format: MeshFormat::from_name(format).ok(), ..MeshReadOptions::default() };
+        for (name, bytes) in MESHES {
+            assert_eq!(read_mesh(bytes, &named).unwrap().triangles().len(), 80, "{name} as {format}");
+        }
+    }
+}
+
 /// An ASCII STL file of these facets.
 fn solid(facets: &[[&str; 3]]) -> String {
     let facet = |corners: &[&str; 3]| {
@@ -144,9 +159,12 @@ fn faults_of_text_are_named() {
     assert_eq!((error.code, &*error.found), (CorruptFile, "\"zero\" in line 5"));
     assert_eq!(read(fixture!("mask-grey.png")).unwrap_err().found, "a PNG image");
     let mut claims = fixture!("mesh.stl").to_vec();
-    claims[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
     let as_stl = MeshReadOptions { format: Some(MeshFormat::Stl), ..MeshReadOptions::default() };
-    assert_eq!(read_mesh(&claims, &as_stl).unwrap_err().code, CorruptFile);
+    for count in [u32::MAX, 0, 79] {
+        claims[80..84].copy_from_slice(&count.to_le_bytes());
+        let error = read_mesh(&claims, &as_stl).unwrap_err();
+        assert!(error.code == CorruptFile && error.found.contains("before the data of 80"), "{count}: {error}");
+    }
 }
 
 #[wasm_bindgen_test]

@@ -43,6 +43,7 @@ const formats: readonly (readonly [beginning: RegExp, found: string, remedy: str
     "Convert it with meshio (pip install meshio): meshio convert in.vtk out.obj.",
   ],
   [/^\$MeshFormat/, "a mesh of Gmsh", "Convert it with meshio (pip install meshio): meshio convert in.msh out.obj."],
+  [/^version https:\/\/git-lfs/, "a pointer of Git LFS, which stands for the file", "Fetch the file: git lfs pull."],
   [
     /^\s*<(!DOCTYPE html|html)/i,
     "an HTML page",

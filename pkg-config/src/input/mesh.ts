@@ -47,13 +47,18 @@ export async function decodeMesh(
     const mesh = (module: Formats) => module.readMesh(...decode(bytes, read));
     return await callReader(readers.formats, argument, bytes, mesh, rename);
   } catch (error) {
-    if (!(error instanceof Sim3AlignError && error.code === "UNSUPPORTED_FORMAT")) throw error;
+    // By the ending of its name, a file of another format is damaged.
+    if (!(error instanceof Sim3AlignError && maybeForeign.has(error.code))) throw error;
     const { foreignMesh } = await import("./foreign-meshes.js");
     const known = foreignMesh(bytes);
     if (known === undefined) throw error;
-    throw failure(error.code, error.argument, known.found, error.expected, known.remedy);
+    const expected = formatsText("mesh");
+    throw failure("UNSUPPORTED_FORMAT", error.argument, known.found, expected, known.remedy);
   }
 }
+
+/** The errors of files of other formats. */
+const maybeForeign: ReadonlySet<string> = new Set(["UNSUPPORTED_FORMAT", "CORRUPT_FILE", "EMPTY_MESH"]);
 
 /** The decoder of Draco, which is compiled once; its own script makes instances. */
 const draco = /* @__PURE__ */ new WasmModule(
