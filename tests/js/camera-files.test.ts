@@ -94,7 +94,7 @@ test("a camera's size, depth scale and field of view are those of the file", asy
 test("pixels of renderers and of intrinsics in one side are square", async () => {
   const sensor = { lens: 45, sensor_width: 36, sensor_height: 24 };
   const normal = { fx: 0.9375, fy: 0.953125, cx: 0.5, cy: 0.375 };
-  const cases: [object, [fx: number, fy: number], RegExp | undefined][] = [
+  const cases: [Record<string, unknown>, [fx: number, fy: number], RegExp | undefined][] = [
     [sensor, [800, 800], /36 × 24 .* squares, and its width counted/],
     [{ ...sensor, sensor_fit: "AUTO" }, [800, 800], undefined],
     [{ ...sensor, sensor_fit: "VERTICAL" }, [900, 900], undefined],
