@@ -222,7 +222,9 @@ export const documentation = (www, { all, listed }) => ({
     for (const [name, text] of texts) emit(name, text);
     for (const [path, name] of pictures) emit(name, readFileSync(path));
     for (const { path, content } of await searchFiles(texts)) emit(`pagefind/${path}`, content);
-    const style = ["theme.css", "documents.css"].map((name) => readFileSync(join(www, "style", name), "utf8"));
+    const style = ["theme", "controls", "documents"].map((name) =>
+      readFileSync(join(www, `style/${name}.css`), "utf8"),
+    );
     emit("style.css", style.join("\n"));
     emit("script.js", readFileSync(join(www, "documents.js"), "utf8"));
   },

@@ -34,6 +34,10 @@ const writeBetween = (mark, content) =>
     return text.replace(marked, (_, start, end) => `${start}\n${content}\n\n${end}`);
   });
 
+/** Shows what the places are about. */
+const picture =
+  "![Four differences: the centre of the first pixel is 0 or 0.5; depth is along the axis or along the ray; a depth map at half its size has readings between surfaces; a box is along the axes or the smallest](../pictures/interoperability.svg)";
+
 /** Writes the table of the places where programs differ. @param {readonly Cell[]} cells */
 export function writePlaces(cells) {
   const rows = Object.values(data("places")).map(({ question, decision }) => {
@@ -48,7 +52,7 @@ export function writePlaces(cells) {
     const lines = Array.from(versions, ([answer, all]) => answer.replace("|", ` ${all.join(" and ")}`));
     return `| ${question} | ${lines.join("<br>")} | ${decision} |`;
   });
-  writeBetween("places", `| question | answers | what to do |\n|---|---|---|\n${rows.join("\n")}`);
+  writeBetween("places", `${picture}\n\n| question | answers | what to do |\n|---|---|---|\n${rows.join("\n")}`);
 }
 
 /** Writes the table of programs. @param {readonly Cell[]} cells @param {string} date */

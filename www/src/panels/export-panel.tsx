@@ -24,7 +24,7 @@ export function ExportPanel() {
     </button>
   );
   return (
-    <section class="stack panel export-panel" style={{ gridArea: "export" }} aria-labelledby="export-title">
+    <section class="panel export-panel" style={{ gridArea: "export" }} aria-labelledby="export-title">
       <h2 id="export-title">Export</h2>
       <div class="row">
         <fieldset class="row" disabled={!isReady}>

@@ -33,7 +33,7 @@ export function HandPanel() {
   return (
     <section class="panel hand-panel" style={{ gridArea: "hand" }} part="hand" aria-labelledby="hand-title">
       {/* Each is in sight while it can do something, or has the focus. */}
-      <div class="row panel-head">
+      <div class="row">
         {steps.map(([name, title, keys, can]) => (
           <button
             key={name}

@@ -33,7 +33,7 @@ export function ObjectsPanel({ children }: { children?: ComponentChildren }) {
           Objects <span class="quiet">{unit.value === null && "cm"}</span>
         </h2>
         <span class="quiet" title="Decided">
-          {objects.filter(({ verdict }) => verdict.value !== null).length} of {objects.length}
+          {objects.filter(({ verdict }) => verdict.value !== null).length} of {objects.length + awaited.length}
         </span>
         {children}
       </div>

@@ -76,7 +76,7 @@ const symmetry = choiceOf(
 function Select({ id, title, about, titles, chosen, choose }: Choice) {
   const workspace = useWorkspace();
   return (
-    <div class="option">
+    <div class="row option">
       <label for={id}>{title}</label>
       <Tip label={title.toLowerCase()}>{about}</Tip>
       <Choices
@@ -100,7 +100,7 @@ function NumberField({ name, title, about, unit = "" }: NumberProps) {
   const { options, setOption } = useWorkspace();
   const id = `option-${name}`;
   return (
-    <div class="option">
+    <div class="row option">
       <label for={id}>{title}</label>
       <Tip label={title.toLowerCase()}>{about}</Tip>
       <span class="with-unit">

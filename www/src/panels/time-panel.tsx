@@ -20,6 +20,13 @@ const { frameIndex, framePoses, gizmo, selected, video } = page;
 /** Time between frames while they are played. */
 const FRAME_MS = 120;
 
+const stateColours = {
+  tracking: "light-dark(#2e9e5b, #4cc27d)",
+  uncertain: "light-dark(#d99a1c, #f0bf66)",
+  lost: "light-dark(#c9303b, #ff8080)",
+  corrected: "var(--accent)",
+};
+
 const stateTitles = { tracking: "tracked", uncertain: "uncertain", lost: "lost" };
 
 function titleOf(pose: FramePose | null): string {
@@ -42,7 +49,7 @@ export function TimePanel() {
   const source = selected.value?.pose.value.source;
   const canCorrect = !isTracking.value && poses[index] != null && source !== "tracked" && source !== "start";
   return (
-    <section class="row panel time" aria-label="Frames">
+    <section class="row panel time" style={{ gridArea: "time" }} aria-label="Frames">
       <button
         type="button"
         id="previous-frame"
@@ -74,12 +81,11 @@ export function TimePanel() {
           onInput={({ currentTarget }) => showFrame(currentTarget.valueAsNumber)}
         />
         <div class="strip" aria-hidden="true">
-          {poses.map((pose, i) => (
-            <span
-              key={opened.frames[i]?.name}
-              data-state={pose === null ? "none" : pose.isCorrected ? "corrected" : pose.state}
-            />
-          ))}
+          {poses.map((pose, i) => {
+            const state = pose?.isCorrected ? "corrected" : pose?.state;
+            const background = state && stateColours[state];
+            return <span key={opened.frames[i]?.name} data-state={state ?? "none"} style={{ background }} />;
+          })}
         </div>
       </div>
       <span class="frame-name" id="frame-name">
