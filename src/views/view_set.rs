@@ -6,7 +6,6 @@ use super::world_pose::{PlacedCamera, WorldPose};
 use crate::geometry::rotations::angle_between;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::render::Canvas;
-use crate::precise::scoring::objective::Objective;
 use crate::precise::scoring::score::Score;
 use crate::precise::search::cascade::{Cascade, Stage};
 use crate::precise::search::problem::{EQUAL_MAX_RAD, EQUIVALENT_MAX_SCORE_LOSS, FACING_CAMERA, Search};
@@ -129,10 +128,11 @@ impl<'a> ViewSet<'a> {
     }
 
     fn on_grids(&self, index: usize) -> Joint<'a> {
-        // What the finest grid counts as an error of the depth is less than that of camera poses.
-        let objective = |part: &Part<'a>| Objective {
-            scoring: part.search.scoring(index.min(FINE)),
-            ..part.search.objective(index)
+        let objective = |part: &Part<'a>| {
+            let mut objective = part.search.objective(index);
+            // What the finest grid counts as an error of the depth is less than that of camera poses.
+            objective.scoring = part.search.settings.scoring(&part.search.observation, index.min(FINE));
+            objective
         };
         let views =
             self.parts.iter().map(|part| JointView { objective: objective(part), camera: part.camera, floor: 0.0 });

@@ -21,7 +21,7 @@ use crate::precise::scoring::conditioning::{Conditioning, DROP, at_known, gradie
 use crate::precise::scoring::objective::Objective;
 use crate::precise::scoring::prior::Prior;
 use crate::precise::scoring::scene_term::SceneTerm;
-use crate::precise::scoring::score::{Score, Scoring};
+use crate::precise::scoring::score::Score;
 use crate::report::Effort;
 
 /// Rotations tried around a given pose, radians, and the number that are refined.
@@ -164,17 +164,13 @@ impl Search {
         self.grids[index].get_or_init(|| CropGrid::new(&self.observation, self.settings.grids[index].cells))
     }
 
-    /// The weights and errors of the score on the grid with this index.
-    pub fn scoring(&self, index: usize) -> Scoring {
-        self.settings.scoring(&self.observation, index)
-    }
-
     /// The objective on the grid with this index.
     pub fn objective(&self, index: usize) -> Objective<'_> {
+        let scoring = self.settings.scoring(&self.observation, index);
         Objective {
             model: &self.mesh.models[index],
             grid: self.grid(index),
-            scoring: self.scoring(index),
+            scoring,
             prior: self.prior,
             equivalence: &self.equivalence,
             scene: self.scene.as_ref(),
