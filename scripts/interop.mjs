@@ -2,7 +2,7 @@
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { command } from "./bench/command.mjs";
-import { data, root, rowsOf, runPackage } from "./interop/cells.mjs";
+import { data, factsOf, filesOf, root, runPackage, withFound } from "./interop/cells.mjs";
 import { writeFixtures, writePlaces, writeTable } from "./interop/table.mjs";
 import { cached, digest } from "./lib/cache.mjs";
 import { buildPackage } from "./lib/package.mjs";
@@ -11,105 +11,119 @@ import { pythonOf } from "./lib/python.mjs";
 import { attempt, run } from "./lib/run.mjs";
 import { step } from "./lib/step.mjs";
 
-/** @typedef {import("./interop/table.mjs").Cell} Cell */
+/**
+ * @typedef {import("./interop/cells.mjs").Written} Written
+ * @typedef {import("./interop/cells.mjs").Row} Row
+ * @typedef {import("./interop/cells.mjs").Done} Done
+ */
 
-const env = { PYTHONPATH: at("scripts"), PYTHONDONTWRITEBYTECODE: "1" };
+const env = {
+  PYTHONPATH: at("scripts"),
+  PYTHONDONTWRITEBYTECODE: "1",
+  // Without it, OpenCV 4 writes no EXR.
+  OPENCV_IO_ENABLE_OPENEXR: "1",
+};
 /**
  * Of each environment of Python, the packages of its programs, the first in the version that is run, and what they need `also`.
- * @type {{ python: Record<string, Record<string, string>>, npm: Record<string, string> }}
+ * @type {{ python: Record<string, Record<string, string>>, npm: string[] }}
  */
 const packages = data("packages");
 
 /** Installs npm packages that the repository does not have. */
 async function npm() {
   const folder = join(root, "npm");
-  const wanted = JSON.stringify({ private: true, dependencies: packages.npm }, null, 2);
-  await cached(join(folder, "installed-from"), digest([], [wanted]), [], async () => {
-    mkdirSync(folder, { recursive: true });
-    writeFileSync(join(folder, "package.json"), wanted);
-    await run("npm", ["install", "--ignore-scripts", "--no-audit", "--no-fund"], {
-      cwd: folder,
-      remedy: "check that the npm registry can be reached",
-    });
+  const install = ["install", "--prefix", folder, "--ignore-scripts", "--no-audit", "--no-fund", ...packages.npm];
+  const remedy = "check that the npm registry can be reached";
+  await cached(join(folder, "installed-from"), digest([], packages.npm), [], async () => {
+    await run("npm", install, { remedy });
   });
 }
 
 /**
- * Runs a Python program.
+ * Runs a Python program. What crashes misses all of its cells.
  * @param {string} python
  * @param {string} name
- * @param {string} version
- * @param {readonly import("./interop/cells.mjs").Written[]} files
+ * @param {readonly Written[]} files
+ * @param {readonly Row[]} facts
+ * @returns {Promise<Done>}
  */
-async function runPython(python, name, version, files) {
-  const job = join(root, "rows", `${name}-${version}.json`);
+async function runPython(python, name, files, facts) {
+  const job = join(root, "rows", "job.json");
+  const calls = facts.filter(({ call }) => call.length > 0).map(({ kind, name, call }) => [kind, name, ...call]);
   const writes = Object.fromEntries(files.map(({ file, call }) => [file, call]));
-  writeFileSync(job, JSON.stringify({ version, writes }));
+  writeFileSync(job, JSON.stringify({ writes, facts: calls }));
   const { reason, output } = await attempt(python, ["-m", "interop", "cells.run", root, name, job], { env });
   if (reason === "") return JSON.parse(readFileSync(job, "utf8"));
-  // What crashes misses all of its cells.
-  const why = `${reason} ${output.slice(-300)}`;
-  return { failed: Object.fromEntries(files.map(({ file }) => [file, why])), found: {}, why };
+  return { failed: {}, found: {}, why: `${reason} ${output.slice(-300)}` };
 }
 
 /** @param {{ only?: string[], write: boolean, verbose: boolean, python: string }} options */
 async function interop({ only, write, verbose, python: program }) {
+  if (write && only !== undefined) throw new Error("--write: some programs are not the whole table; leave out --only.");
   await buildPackage();
+  await step("npm packages", npm);
   const { readBack } = await import("./interop/read.mjs");
   const { writeOurs } = await import("./interop/ours.mjs");
   const { packageOf, programs } = await import("./interop/programs.mjs");
-  const ofPython = Object.values(packages.python).flatMap(({ also, ...versions }) => Object.keys(versions));
-  const unknown = only?.find((name) => ![...ofPython, ...Object.keys(programs)].includes(name));
+
+  /** @type {Record<string, Promise<string>>} */
+  const installed = {};
+  /** The Python of an environment. @param {string} name */
+  const pythonIn = (name) => {
+    const list = [...new Set(Object.values(packages.python[name] ?? {}).flatMap((each) => each.split(" ")))];
+    const install = () => pythonOf(join(root, name), digest([], list), list, program);
+    installed[name] ??= step(`Python packages: ${name}`, install);
+    return installed[name];
+  };
+  /** @type {{ name: string, version: string, does: (files: Written[], facts: Row[]) => Promise<Done> }[]} */
+  const all = [];
+  for (const [environment, { also, ...versions }] of Object.entries(packages.python)) {
+    for (const [name, requirements] of Object.entries(versions)) {
+      const version = /==(\S+)/.exec(requirements)?.[1] ?? "";
+      all.push({ name, version, does: async (...rows) => runPython(await pythonIn(environment), name, ...rows) });
+    }
+  }
+  for (const [name, { from, open }] of Object.entries(programs)) {
+    all.push({ name, version: packageOf(from).version, does: (...rows) => runPackage(() => open(from), ...rows) });
+  }
+  const isAsked = (/** @type {{ name: string }} */ { name }) => only === undefined || only.includes(name);
+  const unknown = only?.find((name) => !all.some((each) => each.name === name));
   if (unknown !== undefined) throw new Error(`--only: no program is called ${unknown}.`);
+
   rmSync(join(root, "files"), { recursive: true, force: true });
   mkdirSync(join(root, "rows"), { recursive: true });
-
-  const pythonIn = (/** @type {string} */ name) => {
-    const list = [...new Set(Object.values(packages.python[name] ?? {}).flatMap((each) => each.split(" ")))];
-    return step(`Python packages: ${name}`, () => pythonOf(join(root, name), digest([], list), list, program));
-  };
   const main = await pythonIn("main");
   await run(main, ["-m", "interop", "truth.write", root], { env });
   await writeOurs(join(root, "ours"), join(root, "truth"));
 
+  // Of programs that were not asked for, only the files that others convert.
+  const needed = all.filter(isAsked).flatMap(({ name, version }) => filesOf(name, version).flatMap(({ call }) => call));
   /** @type {any[]} */
   const rows = [];
-  /** @typedef {Parameters<typeof rowsOf>[2]} Run */
-  const add = (/** @type {string} */ name, /** @type {string} */ version, /** @type {Run} */ does) =>
-    step(`${name} ${version}`, async (say) => {
-      const own = await rowsOf(name, version, does, readBack);
-      rows.push(...own);
-      say(`${own.length} cells`);
+  for (const each of all) {
+    const { name, version, does } = each;
+    const files = filesOf(name, version).filter(({ file }) => isAsked(each) || needed.includes(file));
+    const facts = isAsked(each) ? factsOf(name, version) : [];
+    if (files.length + facts.length === 0) continue;
+    await step(`${name} ${version}`, async (say) => {
+      const own = await withFound(files, facts, await does(files, facts), readBack);
+      if (isAsked(each)) rows.push(...own);
+      say(isAsked(each) ? `${own.length} cells` : `${own.length} files for others`);
     });
-  const isWanted = (/** @type {string} */ name) => only === undefined || only.includes(name);
-  for (const [environment, { also, ...versions }] of Object.entries(packages.python)) {
-    const wanted = Object.entries(versions).filter(([name]) => isWanted(name));
-    if (wanted.length === 0) continue;
-    const python = await pythonIn(environment);
-    for (const [name, requirements] of wanted) {
-      const version = /==(\S+)/.exec(requirements)?.[1] ?? "";
-      await add(name, version, (files) => runPython(python, name, version, files));
-    }
-  }
-  await step("npm packages", npm);
-  for (const [name, { package: from, run: does }] of Object.entries(programs)) {
-    if (isWanted(name))
-      await add(name, packageOf(from).version, (files) => runPackage((cells) => does(cells, from), files));
   }
 
   const file = join(root, "rows", "all.json");
   writeFileSync(file, JSON.stringify(rows));
   await run(main, ["-m", "interop", "checks.check", root, file], { env });
-  /** @type {Cell[]} */
+  /** @type {import("./interop/table.mjs").Cell[]} */
   const cells = JSON.parse(readFileSync(file, "utf8"));
   const misses = cells.filter(({ passed }) => !passed);
   for (const { program, version, kind, variant, result, passed } of verbose ? cells : misses) {
     console.log(`${passed ? "as stated" : "MISS"}: ${program} ${version}, ${kind}, ${variant}: ${result}`);
   }
   console.log(`${cells.length} cells, ${misses.length} misses.`);
-  if (write) writePlaces(cells);
-  // Some programs are not the whole table.
-  if (write && only === undefined) {
+  if (write) {
+    writePlaces(cells);
     writeFixtures(rows);
     writeTable(cells, new Date().toISOString().slice(0, 10));
   }
@@ -122,7 +136,7 @@ await command("interop", (program) =>
       "Runs some forty programs: our readers read what they write, and they load what we write. Takes about ten minutes, the first time more.",
     )
     .option("--only <program...>", "some programs, by their names in packages.json and programs.mjs of scripts/interop")
-    .option("--write", "write the tables of docs/guides/interoperability.md; with --only, that of places", false)
+    .option("--write", "write the tables of docs/guides/interoperability.md, without --only", false)
     .option("--verbose", "print every cell", false)
     .option("--python <program>", "the Python (3.11) that installs the packages", "python3")
     .action(interop),

@@ -3,60 +3,66 @@
 import importlib
 import json
 import os
+from pydoc import locate
 
 import numpy as np
 
 from .truth import Truth
 
-# OpenCV's axes from OpenGL's.
+# OpenCV's axes from OpenGL's, and from those of ROS.
 FLIP = np.diag([1.0, -1, -1, 1])
+ROS = np.array([[0.0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0], [0, 0, 0, 1]])
 
 
-def dump(path, content, drawn=None):
-    """Writes JSON, and of a polygon the mask that its program draws."""
+def dump(path, content):
     with open(path, "w") as file:
         json.dump(content, file, default=lambda each: each.decode() if isinstance(each, bytes) else np.asarray(each).tolist())
-    if drawn is not None:
-        np.save(os.path.join(os.path.dirname(path), "expected.npy"), drawn.astype(np.uint8))
-
-
-def function(name):
-    """A function of a package: `numpy.save`."""
-    module, _, attribute = name.rpartition(".")
-    return getattr(importlib.import_module(module), attribute)
 
 
 class Cells:
     """The files that a program is to write, each by a call of one of its writers, and the facts that it finds."""
 
-    def __init__(self, t, version, writes):
-        self.t, self.version, self.waiting, self.failed, self.found = t, version, writes, {}, {}
+    def __init__(self, t, writes):
+        self.t, self.waiting, self.failed, self.found = t, writes, {}, {}
 
     def argument(self, value):
-        """What stands in a call: `$depth:f2` is the array `depth` as half floats, `{"call": ["numpy.log", …]}` a result."""
+        """What stands in a call: `["=numpy.log", …]` is a result, `$cv2.INTER_AREA` what a package has, `$depth:f2` the array `depth` as
+        half floats, `$path` the file to write, `$ours/placed.ply` a file of ours."""
+        if isinstance(value, dict):
+            return {name: self.argument(each) for name, each in value.items()}
+        if isinstance(value, list) and str(value[:1]).startswith("['="):
+            return self.call(locate(value[0][1:]), value[1:])
         if isinstance(value, list):
             return [self.argument(each) for each in value]
-        if isinstance(value, dict):
-            inner = {name: self.argument(each) for name, each in value.items()}
-            return function(inner["call"][0])(*inner["call"][1:]) if "call" in inner else inner
         if not (isinstance(value, str) and value.startswith("$")):
             return value
 
         name, _, kind = value[1:].partition(":")
-        array = getattr(self.t, name)
-        return array.astype(kind) if kind else array
+        if name.startswith("ours/"):
+            return os.path.join(self.t.root, name)
+        found = locate(name) if "." in name else getattr(self.t, name)
+        return found.astype(kind) if kind else found
+
+    def call(self, function, arguments):
+        """The result of a function; its last argument in a table may be its `options`, by their names."""
+        last = arguments[-1] if arguments else None
+        options = last["options"] if isinstance(last, dict) and "options" in last else {}
+        given = arguments[:-1] if options else arguments
+        return function(*self.argument(given), **self.argument(options))
 
     def writes(self, **writers):
-        """Writes the files of these writers: `writer(path, *arguments, **options)`."""
-        for path, (name, options, *arguments) in list(self.waiting.items()):
-            if name not in writers and "." not in name:
+        """Writes the files of these writers, and of functions of packages: `writer(path, *arguments, **options)`."""
+        for path, (name, *arguments) in list(self.waiting.items()):
+            writer = locate(name) if "." in name else writers.get(name)
+            if writer is None:
                 continue
 
             del self.waiting[path]
             os.makedirs(os.path.dirname(path), exist_ok=True)
+            self.t.path = path
             try:
-                write = writers.get(name) or function(name)
-                write(path, *self.argument(arguments), **self.argument(options))
+                done = self.call(writer, arguments if "$path" in str(arguments) else ["$path", *arguments])
+                assert done is not False, f"{name} returned False"
             except Exception as error:
                 self.failed[path] = f"{type(error).__name__}: {error}"[:300]
 
@@ -72,17 +78,19 @@ class Cells:
 
 
 def run(root, name, job):
-    """All of a program: its files without code of their own, then its function. Where it fails, its other cells say why."""
+    """All of a program: its function, and what the tables say alone. Where it fails, its other cells say why."""
     with open(job) as file:
         asked = json.load(file)
     t = Truth(root)
-    cells, why = Cells(t, asked["version"], asked["writes"]), "the program did not do it"
-    rooms = [importlib.import_module(f".{each}", __package__) for each in ("cameras", "depths", "loads", "masks", "meshes")]
+    cells, why = Cells(t, asked["writes"]), "the program did not do it"
+    rooms = [importlib.import_module(f".{each}", __package__) for each in ("cameras", "loads", "meshes", "pictures")]
     functions = [vars(room).get(name.lower().replace(" ", "_").replace("-", "_")) for room in rooms]
     try:
-        cells.writes(dump=dump)
         for function in filter(None, functions):
             function(cells, t)
+        cells.writes(dump=dump)
+        for kind, fact, function, *arguments in asked["facts"]:
+            cells.loads(kind, **{fact: cells.call(locate(function), arguments)})
     except Exception as error:
         why = f"{type(error).__name__}: {error}"[:300]
-    dump(job, {"failed": dict.fromkeys(cells.waiting, why) | cells.failed, "found": cells.found, "why": why})
+    dump(job, {"failed": cells.failed, "found": cells.found, "why": why})

@@ -13,6 +13,7 @@ FILES = {"MJCF": ("mjcf", "scene.xml"), "USD": ("usd", "scene.usda"), "URDF": ("
 
 def mujoco(c, t):
     import mujoco
+    import trimesh
 
     # Depth of MuJoCo's renderer needs a display; what it writes itself is the meshes of a model.
     def save(path):
@@ -22,9 +23,7 @@ def mujoco(c, t):
         model = spec.compile()
         # A compiled mesh lies in the frame of its inertia.
         vertices = apply(rigid(np.roll(model.mesh_quat[0], -1), model.mesh_pos[0]), model.mesh_vert)
-        with open(path, "w") as file:
-            np.savetxt(file, vertices, "v %.9g %.9g %.9g")
-            np.savetxt(file, model.mesh_face + 1, "f %d %d %d")
+        trimesh.Trimesh(vertices, model.mesh_face, process=False).export(path)
 
     def load(*path):
         model = mujoco.MjModel.from_xml_path(t.ours(*path))
@@ -77,13 +76,11 @@ def pybullet(c, t):
     visual = pybullet.createVisualShape(pybullet.GEOM_MESH, vertices=vertices, indices=indices)
     pybullet.createMultiBody(0, -1, visual)
     # OpenGL's camera looks along -z. The software renderer looks through the lower left corner of each pixel.
-    view = FLIP @ t.matrix
-    lens = np.zeros((4, 4))
-    lens[0, 0], lens[0, 2] = 2 * t.fx / t.width, 1 - 2 * t.cx / t.width
-    lens[1, 1], lens[1, 2] = 2 * t.fy / t.height, 2 * (t.cy + 1) / t.height - 1
-    lens[2, 2], lens[2, 3], lens[3, 2] = -(far + near) / (far - near), -2 * far * near / (far - near), -1
-    matrices = view.T.ravel().tolist(), lens.T.ravel().tolist()
-    image = pybullet.getCameraImage(t.width, t.height, *matrices, renderer=pybullet.ER_TINY_RENDERER)
+    view = (FLIP @ t.matrix).T.ravel().tolist()
+    left, right = -t.cx / t.fx, (t.width - t.cx) / t.fx
+    bottom, top = (t.cy + 1 - t.height) / t.fy, (t.cy + 1) / t.fy
+    lens = pybullet.computeProjectionMatrix(left * near, right * near, bottom * near, top * near, near, far)
+    image = pybullet.getCameraImage(t.width, t.height, view, lens, renderer=pybullet.ER_TINY_RENDERER)
     buffer, seen = np.asarray(image[3], np.float32).reshape(t.mask.shape), np.asarray(image[4]).reshape(t.mask.shape) == 0
     c.writes(depth=lambda path: np.save(path, buffer), mask=lambda path: np.save(path, seen))
 

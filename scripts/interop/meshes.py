@@ -1,6 +1,5 @@
 """Programs of meshes: they write the known body in each of their formats, and load our meshes."""
 
-import os
 from operator import attrgetter
 
 import numpy as np
@@ -19,6 +18,7 @@ def trimesh(c, t):
     prints = {
         "plain": None,
         "vertex": ColorVisuals(vertex_colors=t.rgba),
+        "grey": ColorVisuals(vertex_colors=np.full_like(t.rgba, 188)),
         "face": ColorVisuals(face_colors=t.face_rgba),
         "simple": TextureVisuals(uv=t.uv, image=image),
         "PBR": TextureVisuals(uv=t.uv, material=material),
@@ -39,16 +39,8 @@ def trimesh(c, t):
         placed.add_geometry(inner, transform=matrix)
         placed.export(path)
 
-    def grey(path):
-        trimesh.Trimesh(t.points, t.triangles, vertex_colors=np.full((len(t.points), 3), 188, np.uint8)).export(path)
-
-    def load(path):
-        # Its Scene joins the geometry with the transforms of the nodes.
-        scene = trimesh.load(path, force="scene")
-        return (scene.to_mesh() if hasattr(scene, "to_mesh") else scene.dump(concatenate=True)).vertices
-
-    c.writes(export=lambda path, print_, **options: body(print_).export(path, **options), halves=halves, node=node, grey=grey)
-    c.meshes(load)
+    c.writes(export=lambda path, print_, **options: body(print_).export(path, **options), halves=halves, node=node)
+    c.meshes(lambda path: trimesh.load(path, force="mesh").vertices)
     box = body("plain", t.turned)
     c.loads("box", extents=box.extents.max(), oriented=max(box.bounding_box_oriented.primitive.extents))
 
@@ -56,11 +48,13 @@ def trimesh(c, t):
 def open3d(c, t):
     import open3d as o3d
 
-    def body(print_, colors=t.colors):
+    prints = {"vertex": t.colors / 255.0, "grey": np.full(t.points.shape, 188 / 255.0)}
+
+    def body(print_):
         vertices, triangles = o3d.utility.Vector3dVector(t.points), o3d.utility.Vector3iVector(t.triangles)
         mesh = o3d.geometry.TriangleMesh(vertices, triangles)
-        if print_ == "vertex":
-            mesh.vertex_colors = o3d.utility.Vector3dVector(colors / 255.0)
+        if print_ in prints:
+            mesh.vertex_colors = o3d.utility.Vector3dVector(prints[print_])
         if print_ == "texture":
             mesh.triangle_uvs = o3d.utility.Vector2dVector(t.uv[t.triangles].reshape(-1, 2))
             # Open3D keeps textures from the bottom up, and turns them round when it reads and writes files.
@@ -69,19 +63,14 @@ def open3d(c, t):
         mesh.compute_vertex_normals()
         return mesh
 
-    def save(path, print_, **options):
-        assert o3d.io.write_triangle_mesh(path, body(print_), **options), "refused"
-
-    def tensor(path):
-        assert o3d.t.io.write_triangle_mesh(path, o3d.t.geometry.TriangleMesh.from_legacy(body("vertex"))), "refused"
-
-    def grey(path):
-        assert o3d.io.write_triangle_mesh(path, body("vertex", np.full(t.points.shape, 188))), "refused"
-
     def cloud(points):
         return o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points))
 
-    c.writes(save=save, tensor=tensor, grey=grey)
+    tensor = o3d.t.geometry.TriangleMesh.from_legacy(body("vertex"))
+    c.writes(
+        save=lambda path, print_, **options: o3d.io.write_triangle_mesh(path, body(print_), **options),
+        tensor=lambda path: o3d.t.io.write_triangle_mesh(path, tensor),
+    )
     c.meshes(lambda path: o3d.io.read_triangle_mesh(path).vertices)
     # Rows, as `toRowMajor` returns them; the extrinsic of a camera.
     matrix = np.reshape(t.read("poses.json")["opencv"]["rows"], (4, 4))
@@ -100,9 +89,8 @@ def open3d(c, t):
     scene = o3d.t.geometry.RaycastingScene()
     corners = np.array([[-9, -9, 1], [9, -9, 1], [9, 9, 1], [-9, 9, 1]], np.float32)
     scene.add_triangles(corners, np.array([[0, 1, 2], [0, 2, 3]], np.uint32))
-    unit = np.linalg.inv(t.K) @ [0, 0, 1]
-    unit /= np.linalg.norm(unit)
-    both = np.array([rays[0, 0], [0, 0, 0, *unit]], np.float32)
+    corner = np.linalg.inv(t.K) @ [0, 0, 1]
+    both = np.array([rays[0, 0], [0, 0, 0, *corner / np.linalg.norm(corner)]], np.float32)
     pinhole, normed = scene.cast_rays(o3d.core.Tensor(both))["t_hit"].numpy()
     c.loads("ray", pinhole=pinhole, normed=normed)
 
@@ -133,8 +121,6 @@ def meshio(c, t):
     plain = meshio.Mesh(t.points, [("triangle", t.triangles)])
     printed = meshio.Mesh(t.points, [("triangle", t.triangles)], point_data=colors)
     c.writes(plain=plain.write, printed=printed.write)
-    c.loads("PLY", placed=meshio.read(t.ours("placed.ply")).points)
-    c.loads("URDF", body=meshio.read(t.ours("found", "urdf", "meshes", "body.obj")).points)
 
 
 def plyfile(c, t):
@@ -171,26 +157,11 @@ def numpy_stl(c, t):
 
 
 def usd_core(c, t):
-    from pxr import Gf, Usd, UsdGeom, UsdPhysics, UsdUtils
-
-    def save(path):
-        stage = Usd.Stage.CreateNew(path)
-        mesh = UsdGeom.Mesh.Define(stage, "/body")
-        mesh.CreatePointsAttr(t.points.astype(np.float32).tolist())
-        mesh.CreateFaceVertexCountsAttr([3] * len(t.triangles))
-        mesh.CreateFaceVertexIndicesAttr(t.triangles.ravel().tolist())
-        stage.SetDefaultPrim(mesh.GetPrim())
-        stage.GetRootLayer().Save()
-
-    def pack(path):
-        save(inner := path.replace(".usdz", ".usdc"))
-        assert UsdUtils.CreateNewUsdzPackage(inner, path)
-        os.remove(inner)
+    from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
     def world_from(prim):
         return np.array(UsdGeom.XformCache().GetLocalToWorldTransform(prim)).T
 
-    c.writes(save=save, pack=pack)
     stage = Usd.Stage.Open(t.ours("found", "usd", "scene.usda"))
     prims = list(stage.Traverse())
     meshes = [UsdGeom.Mesh(prim) for prim in prims if prim.IsA(UsdGeom.Mesh) and "body" in str(prim.GetPath())]

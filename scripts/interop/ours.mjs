@@ -25,7 +25,7 @@ export async function writeOurs(folder, truth) {
     writeFileSync(path, isFile ? content : JSON.stringify(content, array));
   };
   const known = JSON.parse(readFileSync(join(truth, "truth.json"), "utf8"));
-  const { pose, camera } = known;
+  const { pose, camera, support } = known;
   const mesh = {
     positions: Float32Array.from(known.points.flat(), (/** @type {number} */ each) => each / SCALE),
     indices: Uint32Array.from(known.triangles.flat()),
@@ -39,11 +39,6 @@ export async function writeOurs(folder, truth) {
   write("textured.glb", conventions.exportGlb(glb, pose));
   write("placed.ply", conventions.exportPly(mesh, transform));
 
-  // The plane below the body, in the frame of the camera.
-  const plane = Float64Array.of(0, 0, known.corner[2], 0, 0, known.corner[2] + 1);
-  const [x = 0, y = 0, z = 0, ...above] = conventions.applyToPoints(pose, plane);
-  const normal = /** @type {const} */ ([(above[0] ?? 0) - x, (above[1] ?? 0) - y, (above[2] ?? 0) - z]);
-  const support = { normal, d: -(normal[0] * x + normal[1] * y + normal[2] * z) };
   const placed = [{ name: "body", mesh: glb, transform: pose }];
   write("scene.glb", conventions.exportSceneGlb(placed, { support, camera }));
   write("scene-camera.glb", conventions.exportSceneGlb(placed, { camera }));
@@ -52,14 +47,9 @@ export async function writeOurs(folder, truth) {
   for (const name of ["found", "rest"]) {
     const options = { support, camera, rest: name === "rest", density: DENSITY };
     const scene = await simulators.simulatorScene(bodies, options);
-    const files = {
-      mjcf: simulators.toMjcf(scene),
-      urdf: simulators.toUrdf(scene),
-      usd: { "scene.usda": simulators.toUsd(scene) },
-    };
-    for (const [format, texts] of Object.entries(files)) {
-      for (const [path, text] of Object.entries(texts)) write(`${name}/${format}/${path}`, text);
-    }
+    for (const [path, text] of Object.entries(simulators.toMjcf(scene))) write(`${name}/mjcf/${path}`, text);
+    for (const [path, text] of Object.entries(simulators.toUrdf(scene))) write(`${name}/urdf/${path}`, text);
+    write(`${name}/usd/scene.usda`, simulators.toUsd(scene));
     const [body] = scene.bodies;
     write(`${name}/scene.json`, { ...body, mesh: undefined, parts: body?.parts.length, camera: scene.camera });
   }
@@ -77,19 +67,12 @@ export async function writeOurs(folder, truth) {
 
   const box = conventions.orientedBoundingBox(mesh, transform);
   const cuboid = conventions.toCuboid(box);
-  const { matrix: toCamera } = conventions.fromFrame(
-    { ...pose, rotation: [0, 0, 0, 1], translation: [0, 0, 0] },
-    "ros",
-  );
-  write("cuboid.json", { cuboid, corners: box.corners, points: conventions.toCvatCuboid(cuboid), toCamera });
+  write("cuboid.json", { cuboid, corners: box.corners, points: conventions.toCvatCuboid(cuboid) });
   write("scene_gt.json", { 0: [conventions.toBop(transform, { objId: 1 }).entry] });
-  const forms = {
-    opencv: conventions.toSim3(transform),
-    opengl: conventions.toFrame(transform, "opengl"),
-    pytorch3d: conventions.toFrame(transform, "pytorch3d"),
-    ros: conventions.toFrame(transform, "ros"),
-  };
-  const poses = Object.entries(forms).map(([frame, form]) => [frame, { ...form, rows: conventions.toRowMajor(form) }]);
+  const poses = /** @type {const} */ (["opencv", "opengl", "pytorch3d", "ros"]).map((frame) => {
+    const form = conventions.toFrame(transform, frame);
+    return [frame, { ...form, rows: conventions.toRowMajor(form) }];
+  });
   write("poses.json", Object.fromEntries(poses));
   const splats = at("tests", "fixtures", "splat.ply");
   write("splats.ply", conventions.placeSplats(readFileSync(splats), transform));

@@ -2,19 +2,16 @@
 import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { basename, dirname, join } from "node:path";
+import { basename, dirname, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { at } from "../lib/paths.mjs";
-import { fileOf, root } from "./cells.mjs";
+import { root } from "./cells.mjs";
 
-/** @typedef {import("./cells.mjs").Cells} Cells */
+/** @typedef {import("./cells.mjs").Program} Program */
 
 const require = createRequire(join(root, "npm", "package.json"));
 /** @param {string} path @returns {Promise<any>} */
 const load = (path) => import(path.startsWith("three") ? path : pathToFileURL(require.resolve(path)).href);
-const truth = (/** @type {string} */ name) => join(root, "truth", name);
-/** The known object: its points, triangles, and its colours as light. */
-const known = () => JSON.parse(readFileSync(truth("truth.json"), "utf8"));
 
 /** The folder of an installed package, and its version. @param {string} name */
 export function packageOf(name) {
@@ -26,43 +23,40 @@ export function packageOf(name) {
   throw new Error(`${name} is not installed`);
 }
 
-/** @type {Record<string, { package: string, run: (cells: Cells, name: string) => Promise<void> }>} */
+/** @type {Record<string, { from: string, open: (from: string) => Promise<Program> }>} */
 export const programs = {
-  three: { package: "three", run: three },
-  "Babylon.js": { package: "@babylonjs/core", run: babylon },
-  assimp: { package: "assimpjs", run: assimp },
-  obj2gltf: { package: "obj2gltf", run: commands },
-  "splat-transform": { package: "@playcanvas/splat-transform", run: commands },
-  "glTF-Transform": { package: "@gltf-transform/cli", run: gltfTransform },
-  gltfpack: { package: "gltfpack", run: commands },
+  three: { from: "three", open: three },
+  "Babylon.js": { from: "@babylonjs/core", open: babylon },
+  assimp: { from: "assimpjs", open: assimp },
+  obj2gltf: { from: "obj2gltf", open: command },
+  "splat-transform": { from: "@playcanvas/splat-transform", open: command },
+  "glTF-Transform": { from: "@gltf-transform/cli", open: gltfTransform },
+  gltfpack: { from: "gltfpack", open: command },
 };
 
-/** Commands convert the known object in a GLB, splats, or what another program wrote. @param {Cells} cells @param {string} name */
-async function commands({ writes }, name) {
+/** A command converts a file: `$input` and `$output` among its words. @param {string} name @returns {Promise<Program>} */
+async function command(name) {
   const { folder, bin } = packageOf(name);
   const program = join(folder, typeof bin === "string" ? bin : `${Object.values(bin)[0]}`);
-  /** @type {Record<string, string>} */
-  const sources = {
-    vertex: truth("vertex.glb"),
-    texture: truth("texture.glb"),
-    splats: at("tests", "fixtures", "splat.ply"),
-  };
-  await writes({
-    command(output, _, words, source) {
-      /** @type {Record<string, string>} */
-      const paths = { $input: sources[source] ?? fileOf(source).file, $output: output };
-      const args = words.split(" ").map((/** @type {string} */ word) => paths[word] ?? word);
-      execFileSync(process.execPath, [program, ...args], { stdio: "pipe" });
+  return {
+    writers: {
+      command(output, words, input) {
+        const paths = new Map([
+          ["$input", resolve(root, input)],
+          ["$output", output],
+        ]);
+        const args = words.split(" ").map((/** @type {string} */ word) => paths.get(word) ?? word);
+        execFileSync(process.execPath, [program, ...args], { stdio: "pipe" });
+      },
     },
-  });
+  };
 }
 
-/** @param {Cells} cells @param {string} name */
-async function gltfTransform(cells, name) {
-  await commands(cells, name);
+/** @param {string} name @returns {Promise<Program>} */
+async function gltfTransform(name) {
   const { NodeIO } = await import("@gltf-transform/core");
   const { transformMesh } = await import("@gltf-transform/functions");
-  await cells.glb(async (path) => {
+  const glb = async (/** @type {string} */ path) => {
     const nodes = (await new NodeIO().read(path)).getRoot().listNodes();
     return nodes.flatMap((node) => {
       const mesh = node.getMesh();
@@ -70,7 +64,8 @@ async function gltfTransform(cells, name) {
       transformMesh(mesh, node.getWorldMatrix());
       return mesh.listPrimitives().flatMap((each) => [...(each.getAttribute("POSITION")?.getArray() ?? [])]);
     });
-  });
+  };
+  return { ...(await command(name)), glb };
 }
 
 /** A part of the browser's class, for three.js. */
@@ -88,8 +83,8 @@ class FileReaderOfBlobs {
   }
 }
 
-/** @param {Cells} cells */
-async function three({ writes, glb }) {
+/** @returns {Promise<Program>} */
+async function three() {
   // What its exporters and loaders need of a browser.
   Object.assign(globalThis, { self: globalThis, FileReader: FileReaderOfBlobs });
   const three = await load("three");
@@ -130,32 +125,34 @@ async function three({ writes, glb }) {
       return all;
     },
   };
-  await writes({
-    async exporter(path, options, name, form) {
-      const [printed] = await objectsIn(truth("vertex.glb"));
-      const made = forms[form]?.(printed);
-      const exporter = new (await load(`three/examples/jsm/exporters/${name}.js`))[name]();
-      const more = name === "PLYExporter" ? [undefined, options] : [options];
-      const result = await (exporter.parseAsync?.(made, options) ?? exporter.parse(made, ...more));
-      const bytes = result instanceof ArrayBuffer ? new Uint8Array(result) : result;
-      writeFileSync(path, bytes.buffer || typeof bytes === "string" ? bytes : JSON.stringify(bytes));
+  return {
+    writers: {
+      async exporter(path, name, form, { options } = { options: {} }) {
+        const [printed] = await objectsIn(join(root, "truth", "vertex.glb"));
+        const made = forms[form]?.(printed);
+        const exporter = new (await load(`three/examples/jsm/exporters/${name}.js`))[name]();
+        const more = name === "PLYExporter" ? [undefined, options] : [options];
+        const result = await (exporter.parseAsync?.(made, options) ?? exporter.parse(made, ...more));
+        const bytes = result instanceof ArrayBuffer ? new Uint8Array(result) : result;
+        writeFileSync(path, bytes.buffer || typeof bytes === "string" ? bytes : JSON.stringify(bytes));
+      },
     },
-  });
-  await glb(async (path) => {
-    const objects = await objectsIn(path);
-    return objects.flatMap(({ geometry, matrixWorld }) => [
-      ...geometry.applyMatrix4(matrixWorld).attributes.position.array,
-    ]);
-  });
+    async glb(path) {
+      const objects = await objectsIn(path);
+      return objects.flatMap(({ geometry, matrixWorld }) => [
+        ...geometry.applyMatrix4(matrixWorld).attributes.position.array,
+      ]);
+    },
+  };
 }
 
-/** @param {Cells} cells */
-async function babylon({ writes, glb }) {
+/** @returns {Promise<Program>} */
+async function babylon() {
   const [core, serializers] = await Promise.all(["@babylonjs/core", "@babylonjs/serializers"].map(load));
   await load("@babylonjs/loaders/glTF/2.0");
   core.Logger.LogLevels = 0;
   const engine = new core.NullEngine();
-  const { points, triangles, lights } = known();
+  const { points, triangles, lights } = JSON.parse(readFileSync(join(root, "truth", "truth.json"), "utf8"));
   const shapeIn = (/** @type {string} */ hand) => {
     const scene = new core.Scene(engine);
     scene.useRightHandedSystem = hand === "right-handed";
@@ -169,43 +166,45 @@ async function babylon({ writes, glb }) {
     shape.material = new core.PBRMaterial("print", scene);
     return shape;
   };
-  await writes({
-    async glb(path, _, hand) {
-      const { files } = await serializers.GLTF2Export.GLBAsync(shapeIn(hand).getScene(), "mesh");
-      writeFileSync(path, await files["mesh.glb"].bytes());
+  const { GLTF2Export, OBJExport, STLExport } = serializers;
+  return {
+    writers: {
+      async glb(path, hand) {
+        const { files } = await GLTF2Export.GLBAsync(shapeIn(hand).getScene(), "mesh");
+        writeFileSync(path, await files["mesh.glb"].bytes());
+      },
+      obj: (path, hand) => writeFileSync(path, OBJExport.OBJ([shapeIn(hand)], false, undefined, true)),
+      stl: (path, hand) => writeFileSync(path, STLExport.CreateSTL([shapeIn(hand)], false, "mesh", true, true)),
     },
-    obj: (path, _, hand) => writeFileSync(path, serializers.OBJExport.OBJ([shapeIn(hand)], false, undefined, true)),
-    stl: (path, _, hand) =>
-      writeFileSync(path, serializers.STLExport.CreateSTL([shapeIn(hand)], false, "mesh", true, true)),
-  });
-  await glb(async (path) => {
-    const scene = new core.Scene(engine);
-    scene.useRightHandedSystem = true;
-    const url = `data:model/gltf-binary;base64,${readFileSync(path).toString("base64")}`;
-    const pluginOptions = { gltf: { skipMaterials: true } };
-    await core.AppendSceneAsync(url, scene, { pluginExtension: ".glb", pluginOptions });
-    const meshes = scene.meshes.filter((/** @type {any} */ each) => each.getTotalVertices() > 0);
-    return meshes.flatMap((/** @type {any} */ each) => [
-      ...each.bakeCurrentTransformIntoVertices().getVerticesData("position"),
-    ]);
-  });
-  engine.dispose();
+    async glb(path) {
+      const scene = new core.Scene(engine);
+      scene.useRightHandedSystem = true;
+      const url = `data:model/gltf-binary;base64,${readFileSync(path).toString("base64")}`;
+      const pluginOptions = { gltf: { skipMaterials: true } };
+      await core.AppendSceneAsync(url, scene, { pluginExtension: ".glb", pluginOptions });
+      const meshes = scene.meshes.filter((/** @type {any} */ each) => each.getTotalVertices() > 0);
+      return meshes.flatMap((/** @type {any} */ each) => [
+        ...each.bakeCurrentTransformIntoVertices().getVerticesData("position"),
+      ]);
+    },
+  };
 }
 
-/** @param {Cells} cells */
-async function assimp({ writes }) {
+/** @returns {Promise<Program>} */
+async function assimp() {
   const assimp = await require("assimpjs")();
-  await writes({
-    convert(path, _, format, title) {
-      const { file } = fileOf(title);
-      const files = new assimp.FileList();
-      files.AddFile(basename(file), readFileSync(file));
-      const result = assimp.ConvertFileList(files, format);
-      if (!result.IsSuccess()) throw new Error(result.GetErrorCode());
-      for (let i = 0; i < result.FileCount(); i++) {
-        const each = result.GetFile(i);
-        writeFileSync(i === 0 ? path : join(dirname(path), basename(each.GetPath())), each.GetContent());
-      }
+  return {
+    writers: {
+      convert(path, format, source) {
+        const files = new assimp.FileList();
+        files.AddFile(basename(source), readFileSync(source));
+        const result = assimp.ConvertFileList(files, format);
+        if (!result.IsSuccess()) throw new Error(result.GetErrorCode());
+        for (let i = 0; i < result.FileCount(); i++) {
+          const each = result.GetFile(i);
+          writeFileSync(i === 0 ? path : join(dirname(path), basename(each.GetPath())), each.GetContent());
+        }
+      },
     },
-  });
+  };
 }

@@ -1,6 +1,6 @@
 /** Our readers on a file: what they return, as plain numbers, or the error. */
 import { readdirSync, readFileSync } from "node:fs";
-import { basename, dirname, join } from "node:path";
+import { dirname, join } from "node:path";
 import { NodeIO } from "@gltf-transform/core";
 import { packageDir } from "../lib/paths.mjs";
 import { root } from "./cells.mjs";
@@ -18,8 +18,7 @@ const SIZE = { width: 160, height: 120 };
 /** @type {Record<string, (bytes: Uint8Array, written: Written) => Promise<object | number>>} */
 const readers = {
   async mesh(bytes, { file, expect }) {
-    const beside = readdirSync(dirname(file)).filter((name) => name !== basename(file));
-    const names = beside.flatMap((name) => [name, `./${name}`]);
+    const names = readdirSync(dirname(file)).flatMap((name) => [name, `./${name}`]);
     const resources = Object.fromEntries(names.map((name) => [name, readFileSync(join(dirname(file), name))]));
     const mesh = await formats.readMesh(bytes, { resources, ...expect.options });
     const { positions, indices, origin = [0, 0, 0], samples, warnings, unread = [] } = mesh;
@@ -58,5 +57,5 @@ const readers = {
 /** The result of our reader for a file that a program wrote, for `checks.py`. @param {Written} written */
 export async function readBack(written) {
   const bytes = readFileSync(written.file);
-  return readers[written.of]?.(bytes, written).catch(({ code = "none", message }) => ({ code, message }));
+  return readers[written.kind]?.(bytes, written).catch(({ code = "none", message }) => ({ code, message }));
 }

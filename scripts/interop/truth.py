@@ -99,6 +99,7 @@ def picture(points, triangles):
 
 def known():
     """Everything about the object, as arrays."""
+    import cv2
     from scipy.spatial.transform import Rotation
 
     points, triangles = body()
@@ -116,7 +117,6 @@ def known():
         "points": points,
         "triangles": triangles.astype(np.int32),
         "volume": volume(points, triangles),
-        "corner": CORNER,
         "uv": MARGIN + (1 - 2 * MARGIN) * (points - CORNER)[:, :2] / SIZE[:2],
         "colors": colors,
         "rgba": rgba,
@@ -131,21 +131,19 @@ def known():
         "placed": placed,
         "K": np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1.0]]),
         "depth": depth,
-        "depth_nan": np.where(depth == 0, np.float32(np.nan), depth),
-        "depth_inf": np.where(depth == 0, np.float32(np.inf), depth),
         "mm": np.round(depth * 1000).astype(np.uint16),
         # OpenCV takes three channels for blue, green and red, and so turns x, y, z round.
         "zyx": (rays * depth[..., None])[..., ::-1].astype(np.float32),
         "mask": mask,
         # The runs of its columns, as COCO counts them.
         "runs": np.diff(np.r_[0, np.flatnonzero(np.diff(mask.ravel(order="F"), prepend=0)), mask.size]),
+        # The middles of its outermost pixels.
+        "outline": cv2.findContours(mask.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0][0][:, 0],
         # Its first and its last pixels, what is between them, and a box around them.
         "mask_corners": np.array([[columns.min(), rows.min()], [columns.max(), rows.max()]], float),
         "mask_part": mask[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1],
         "box": np.array([columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]),
-        "red": mask[..., None] * np.uint8([0, 0, 255]),
         "cut_out": np.dstack([level // 2 + 90, level // 3 + 40, level // 4 + 70, level]),
-        "logits": (mask * 20.0 - 10).astype(np.float32),
     }
 
 
@@ -158,10 +156,13 @@ def write(root):
     os.makedirs(folder, exist_ok=True)
     arrays = known()
     np.savez(os.path.join(folder, "truth.npz"), **arrays)
-    plain = {name: arrays[name].tolist() for name in ("points", "triangles", "lights", "corner", "mask")}
+    plain = {name: arrays[name].tolist() for name in ("points", "triangles", "lights", "mask")}
     pose = {"scale": 1, "rotation": QUATERNION.tolist(), "translation": TRANSLATION.tolist()}
+    # The plane below the body, in the frame of the camera.
+    normal = arrays["matrix"][:3, 2]
+    support = {"normal": normal.tolist(), "d": -normal @ apply(arrays["matrix"], [0, 0, CORNER[2]])}
     with open(os.path.join(folder, "truth.json"), "w") as file:
-        json.dump(plain | {"pose": pose, "camera": CAMERA}, file)
+        json.dump(plain | {"pose": pose, "camera": CAMERA, "support": support}, file)
 
     row, column = np.mgrid[:36, :68] + 0.5
     share = (np.c_[column.ravel() / 68, 1 - row.ravel() / 36] - MARGIN) / (1 - 2 * MARGIN)

@@ -13,7 +13,7 @@ interface Row {
   kind: string;
   variant: string;
   file: string;
-  expect: { axes?: string; warns?: string; refused?: string; says?: string; limit?: number; camera?: object };
+  expect: { axes?: number[][]; warns?: string; refused?: string; says?: string; limit?: number; camera?: object };
 }
 
 const folder = join(repository, "tests", "fixtures", "interop");
@@ -33,7 +33,8 @@ const print = ([x = 0, y = 0]: readonly number[]) => [40 + 1000 * (x + 0.02), 40
 for (const { program, version, variant, ...row } of rows("mesh")) {
   test(`${program} ${version}, ${variant}: axes, size, place, winding and print`, async () => {
     const mesh = await readMesh(bytesOf(row as Row), row.expect.options);
-    const toBody = row.expect.axes === "y-up" ? ([x = 0, y = 0, z = 0]: number[]) => [x, -z, y] : (p: number[]) => p;
+    const toBody = (p: number[]) =>
+      row.expect.axes?.map((from) => from.reduce((sum, each, k) => sum + each * (p[k] ?? 0), 0)) ?? p;
     const point = (from: ArrayLike<number>, i: number) => toBody([0, 1, 2].map((k) => from[3 * i + k] ?? 0));
     const points = Array.from({ length: mesh.positions.length / 3 }, (_, i) => point(mesh.positions, i));
     const limit = row.expect.limit ?? 1e-6;

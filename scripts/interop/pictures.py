@@ -1,4 +1,4 @@
-"""Programs of labels: masks in each of their formats, and ours that they load."""
+"""Programs of pictures: depth maps and masks in each of their formats, labels, and ours that they load."""
 
 import os
 import shutil
@@ -6,8 +6,54 @@ import tempfile
 
 import numpy as np
 
-from .cells import dump
-from .truth import apply
+from .cells import FLIP, ROS, dump
+from .truth import apply, rigid
+
+
+def opencv(c, t):
+    import cv2
+
+    def calibration(path):
+        camera = {"image_width": t.width, "image_height": t.height, "camera_matrix": t.K}
+        file = cv2.FileStorage(path, cv2.FILE_STORAGE_WRITE)
+        for name, value in camera.items():
+            file.write(name, value)
+        file.write("distortion_coefficients", np.array([[0.05, -0.06, 0.001, 0.0, 0.0]]))
+        file.release()
+
+    c.writes(calibration=calibration)
+    middle = cv2.getDefaultNewCameraMatrix(t.K, (t.width, t.height), True)[0, 2]
+    c.loads("pixel", middle=middle - (t.width - 1) / 2)
+
+
+def pillow(c, t):
+    from PIL import Image
+
+    def save(path, array, mode=None, **options):
+        image = Image.fromarray(array)
+        (image if mode is None else image.convert(mode)).save(path, **options)
+
+    c.writes(save=save)
+
+
+def openexr(c, t):
+    import OpenEXR
+
+    plain = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    c.writes(save=lambda path, channels, **header: OpenEXR.File(plain | header, channels).write(path))
+
+
+def numpy(c, t):
+    entry = t.read("scene_gt.json")["0"][0]
+    bop = rigid(np.reshape(entry["cam_R_m2c"], (3, 3)), np.array(entry["cam_t_m2c"]) / 1000)
+    c.loads("BOP", placed=apply(bop, t.points))
+
+    frames = {"opencv": np.eye(4), "opengl": FLIP, "pytorch3d": np.diag([-1.0, -1, 1, 1]), "ros": ROS}
+    for frame, to_camera in frames.items():
+        given = t.read("poses.json")[frame]
+        rows, columns = np.reshape(given["rows"], (4, 4)), np.reshape(given["matrix"], (4, 4))
+        placed = apply(to_camera @ rows, t.points / 0.25)
+        c.loads("pose", **{f"{frame} rows": placed, f"{frame} columns": columns.T - rows})
 
 
 def pycocotools(c, t):
@@ -33,7 +79,7 @@ def cvat(c, t):
     center, angles, size = np.array(shape.to_dict()["points"][:9]).reshape(3, 3)
     corners = (np.indices((2, 2, 2)).reshape(3, -1).T - 0.5) * size
     box = Rotation.from_euler("XYZ", angles).apply(corners) + center
-    c.loads("cuboid", corners=apply(np.reshape(ours["toCamera"], (4, 4)).T, box))
+    c.loads("cuboid", corners=apply(ROS, box))
 
 
 def datumaro(c, t):
@@ -66,13 +112,9 @@ def datumaro(c, t):
 def supervisely(c, t):
     import supervisely as sly
 
-    def save(path, shape, drawn=None):
+    def save(path, shape):
         label = sly.Label(shape, sly.ObjClass("body", type(shape)))
-        dump(path, sly.Annotation((t.height, t.width), [label]).to_json(), drawn)
+        dump(path, sly.Annotation((t.height, t.width), [label]).to_json())
 
-    def polygon(path, corners):
-        shape, canvas = sly.Polygon([sly.PointLocation(*each) for each in corners], []), np.zeros((t.height, t.width, 3), np.uint8)
-        shape.draw(canvas, color=[255, 255, 255])
-        save(path, shape, canvas[..., 0] > 0)
-
-    c.writes(bitmap=lambda path, mask: save(path, sly.Bitmap(mask)), polygon=polygon)
+    outline = [sly.PointLocation(v, u) for u, v in t.outline]
+    c.writes(bitmap=lambda path, mask: save(path, sly.Bitmap(mask)), polygon=lambda path: save(path, sly.Polygon(outline, [])))
