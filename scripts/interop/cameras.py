@@ -1,5 +1,6 @@
 """Programs of cameras, poses and recordings."""
 
+import dataclasses
 import os
 from pathlib import Path
 
@@ -57,6 +58,21 @@ def open3d(c, t):
 def rosbags(c, t):
     import cv2
     from rosbags import rosbag1
+    from rosbags.typesys import Stores, get_typestore
+
+    def info(path, store, size, crop):
+        """A message of a camera whose pictures have this size, and are cropped to x, y, height and width."""
+        types = get_typestore(Stores[store]).types
+        is_first = store == "ROS1_NOETIC"
+        stamp = types["builtin_interfaces/msg/Time"](sec=1, nanosec=2)
+        header = types["std_msgs/msg/Header"](stamp=stamp, frame_id="camera", **({"seq": 0} if is_first else {}))
+        roi = types["sensor_msgs/msg/RegionOfInterest"](*crop, do_rectify=False)
+        matrix = t.K + [[0, 0, crop[0]], [0, 0, crop[1]], [0, 0, 0]]
+        numbers = {"d": np.zeros(5), "k": matrix.ravel(), "r": np.eye(3).ravel(), "p": np.c_[matrix, np.zeros(3)].ravel()}
+        numbers = {key.upper() if is_first else key: each for key, each in numbers.items()}
+        bins = {"binning_x": 0, "binning_y": 0}
+        make = types["sensor_msgs/msg/CameraInfo"]
+        dump(path, dataclasses.asdict(make(header, *size, distortion_model="plumb_bob", roi=roi, **bins, **numbers)))
 
     def compressed(path):
         # image_transport: twelve bytes of the configuration, then the PNG.
@@ -66,7 +82,7 @@ def rosbags(c, t):
         with rosbag1.Writer(path):
             pass
 
-    c.writes(compressed=compressed, bag=bag)
+    c.writes(info=info, compressed=compressed, bag=bag)
 
 
 def mcap(c, t):
@@ -96,14 +112,15 @@ def depthai(c, t):
 def realsense(c, t):
     import pyrealsense2 as rs
 
-    numbers = {"width": t.width, "height": t.height, "fx": t.fx, "fy": t.fy, "ppx": t.cx, "ppy": t.cy}
     lens = rs.intrinsics()
-    for name, value in numbers.items():
-        setattr(lens, name, value)
+    names = {"width": "width", "height": "height", "fx": "fx", "fy": "fy", "ppx": "cx", "ppy": "cy"}
+    for name, known in names.items():
+        setattr(lens, name, getattr(t, known))
 
     def save(path, model, coefficients):
         lens.model, lens.coeffs = model, coefficients
-        dump(path, numbers | {"coeffs": lens.coeffs, "model": str(lens.model)})
+        numbers = {name: getattr(lens, name) for name in [*names, "coeffs"]}
+        dump(path, numbers | {"model": str(lens.model)})
 
     c.loads("pixel", deproject=rs.rs2_deproject_pixel_to_point(lens, [0, 0], 1.0)[0] * t.fx + t.cx)
     c.writes(save=save)
