@@ -196,10 +196,11 @@ fn find(headers: &[Header]) -> Result<Found> {
     };
     // Blender's for its denoiser is another form of the depth.
     let is_copy = |&(layer, channel): &(usize, usize)| layers[layer][channel].contains("denoising");
-    let mut depths: Vec<(usize, usize)> = places(&DEPTH_NAMES).into_iter().filter(is_depth).collect();
-    depths.sort_by_key(is_copy);
-    if let Some((&(layer, channel), others)) = depths.split_first() {
-        let names = others.iter().filter(|other| !is_copy(other)).map(|&(layer, channel)| &layers[layer][channel]);
+    let depths: Vec<(usize, usize)> = places(&DEPTH_NAMES).into_iter().filter(is_depth).collect();
+    let chosen = depths.iter().find(|depth| !is_copy(depth)).or(depths.first());
+    if let Some(&(layer, channel)) = chosen {
+        let others = depths.iter().filter(|other| **other != (layer, channel) && !is_copy(other));
+        let names = others.map(|&(layer, channel)| &layers[layer][channel]);
         let unread = names.map(|name| format!("the channel `{name}` of the depth file")).collect();
         return Ok(Found { layer, channels: vec![channel], unread });
     }
