@@ -104,7 +104,7 @@ export class SitePage {
   isNow = (source: string) => this.page.locator(`.result[data-source="${source}"]`).waitFor(PATIENCE);
 
   /** Shows a control that is behind a disclosure or in a menu, uses it, and closes the menu. */
-  private async reveal(control: Locator, use: (control: Locator) => Promise<unknown>): Promise<void> {
+  async reveal(control: Locator, use: (control: Locator) => Promise<unknown>): Promise<void> {
     const menu = await control.evaluateHandle((one) => {
       for (let at = one.closest("details"); at != null; at = at.parentElement?.closest("details") ?? null)
         at.open = true;

@@ -1,6 +1,6 @@
 /** The decision about a result: accept it, fix it, go on to the next one. */
 import { accept, acceptSure, decideOn, fix, next, sureOf } from "../commands/decisions.js";
-import { Menu } from "../ui/controls.js";
+import { Menu, TextField } from "../ui/controls.js";
 import { percent } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 
@@ -47,26 +47,20 @@ export function Decision() {
             {one === "skipped" ? "Skip" : "Impossible"}
           </button>
         ))}
-        <label class="field-inline">
-          <span>Name</span>
-          <input
-            id="object-name"
-            value={object?.name ?? ""}
-            onChange={({ currentTarget }) => {
-              if (object !== null) rename(object, currentTarget.value.trim() || object.name);
-            }}
-          />
-        </label>
-        <label class="field-inline">
-          <span>Comment</span>
-          <input
-            id="comment"
-            value={object?.comment.value ?? ""}
-            onChange={({ currentTarget }) => {
-              if (object !== null) object.comment.value = currentTarget.value;
-            }}
-          />
-        </label>
+        <TextField
+          id="object-name"
+          title="Name"
+          value={object?.name ?? ""}
+          onEnter={(text) => object !== null && rename(object, text.trim() || object.name)}
+        />
+        <TextField
+          id="comment"
+          title="Comment"
+          value={object?.comment.value ?? ""}
+          onEnter={(text) => {
+            if (object !== null) object.comment.value = text;
+          }}
+        />
       </Menu>
     </fieldset>
   );

@@ -1,6 +1,6 @@
 /** Controls that several panels use. */
 import type { ComponentChildren } from "preact";
-import { useEffect, useId, useRef } from "preact/hooks";
+import { useEffect, useId, useRef, useState } from "preact/hooks";
 import { filesOf } from "../input/files.js";
 import type { NamedFile } from "../state/inputs.js";
 
@@ -46,6 +46,33 @@ export const Check = ({ title, onCheck, ...box }: CheckProps) => (
     <span>{title}</span>
   </label>
 );
+
+interface TextFieldProps {
+  id: string;
+  title: string;
+  value: string;
+  onEnter(text: string): void;
+}
+
+/** A field that keeps what is being typed, however often it is drawn meanwhile, until it is entered or left. */
+export function TextField({ id, title, value, onEnter }: TextFieldProps) {
+  const [typed, setTyped] = useState<string | null>(null);
+  return (
+    <label class="field-inline">
+      <span>{title}</span>
+      <input
+        id={id}
+        value={typed ?? value}
+        onInput={({ currentTarget }) => setTyped(currentTarget.value)}
+        onChange={({ currentTarget }) => {
+          setTyped(null);
+          onEnter(currentTarget.value);
+        }}
+        onBlur={() => setTyped(null)}
+      />
+    </label>
+  );
+}
 
 interface FileButtonProps {
   id: string;
