@@ -22,8 +22,6 @@ import { reliability, reliabilityHeads } from "./record/summary.mjs";
 
 /** The index of the margin among the features. */
 const MARGIN = 3;
-/** The logarithm of the odds between two poses at a margin of 1: `NOISE`, a 32-bit number, over `DROP`. */
-const RIVAL_LOG_ODDS = Math.fround(0.15) / 0.01;
 /** Weight of the penalty on slopes, which keeps them finite where the features separate right from wrong. */
 const PENALTY = 1e-3;
 const MAX_STEPS = 100;
@@ -36,26 +34,32 @@ const SETS = {
   sensors: { set: "sensors", part: 1 / 3, suffix: "" },
 };
 
-/** The constants of the sources, which are declared there alone. @returns {Model} */
+/** A constant of the sources, which is declared there alone. @param {string} file in src/precise @param {string} name */
+function declared(file, name) {
+  const source = readFileSync(at("src", "precise", file), "utf8");
+  const value = new RegExp(`const ${name}: [^=]+= \\[?([^\\];]+)`).exec(source)?.[1];
+  if (value === undefined) throw new Error(`src/precise declares no ${name}. Remedy: correct scripts/fit.mjs.`);
+  return value.split(",").map(Number);
+}
+
+const CONFIDENCE = "verdict/confidence.rs";
+const CONDITIONING = "scoring/conditioning.rs";
+/** A 32-bit number there. */
+const NOISE = Math.fround(declared("scoring/score.rs", "NOISE")[0] ?? Number.NaN);
+/** The logarithm of the odds between two poses at a margin of 1. */
+const RIVAL_LOG_ODDS = NOISE / (declared(CONDITIONING, "DROP")[0] ?? Number.NaN);
+
+/** The constants in the code. @returns {Model} */
 function currentModel() {
-  const read = (/** @type {string} */ file) => readFileSync(at("src", "precise", file), "utf8");
-  const numbers = (/** @type {string} */ source, /** @type {string} */ name) => {
-    const value = new RegExp(`const ${name}: [^=]+= \\[?([^\\];]+)`).exec(source)?.[1];
-    if (value === undefined) throw new Error(`src/precise declares no ${name}. Remedy: correct scripts/fit.mjs.`);
-    return value.split(",").map(Number);
-  };
-  const [confidence, score] = [read("verdict/confidence.rs"), read("scoring/score.rs")];
-  const conditioning = read("scoring/conditioning.rs");
-  const limits = (/** @type {string} */ name) => /** @type {Limits} */ (numbers(confidence, name));
+  const limits = (/** @type {string} */ name) => /** @type {Limits} */ (declared(CONFIDENCE, name));
   return {
-    intercept: numbers(confidence, "INTERCEPT")[0] ?? Number.NaN,
-    slopes: numbers(confidence, "SLOPES"),
-    // A 32-bit number there.
-    noise: Math.fround(numbers(score, "NOISE")[0] ?? Number.NaN),
+    intercept: declared(CONFIDENCE, "INTERCEPT")[0] ?? Number.NaN,
+    slopes: declared(CONFIDENCE, "SLOPES"),
+    noise: NOISE,
     scale: limits("SCALE"),
     rotationDeg: limits("ROTATION_DEG"),
-    misfit: numbers(conditioning, "MISFIT")[0] ?? Number.NaN,
-    minMisfit: numbers(conditioning, "MIN_MISFIT")[0] ?? Number.NaN,
+    misfit: declared(CONDITIONING, "MISFIT")[0] ?? Number.NaN,
+    minMisfit: declared(CONDITIONING, "MIN_MISFIT")[0] ?? Number.NaN,
   };
 }
 

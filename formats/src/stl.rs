@@ -23,7 +23,7 @@ pub(crate) fn has_binary_length(bytes: &[u8]) -> bool {
     count.is_ok_and(|count| (count as usize).checked_mul(TRIANGLE_BYTES) == Some(cursor.remaining().len()))
 }
 
-/// Whether a file begins like the text form.
+/// Whether a file begins with the keyword of the text form.
 pub(crate) fn begins_as_text(bytes: &[u8]) -> bool {
     let text = unmarked(bytes).trim_ascii_start();
     text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))

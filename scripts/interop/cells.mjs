@@ -80,7 +80,7 @@ export async function withFound(files, facts, { failed, found, why }, read) {
 }
 
 /**
- * What an npm program does: its writers, by the names of `writes.json`, and the positions that it sees in a GLB.
+ * An npm program: the functions that write its files, by their names in `writes.json`, and the one that reads positions from a GLB.
  * @typedef {object} Program
  * @property {Record<string, (path: string, ...args: any[]) => unknown>} writers
  * @property {(path: string) => Promise<Iterable<number>>} [glb]

@@ -1,4 +1,4 @@
-/** What a run leaves in the repository: the tables of the guide, all cells, and fixtures. */
+/** Writes the results of a run to the repository: the tables of the guide, a list of all cells, and the fixtures. */
 import { copyFileSync, mkdirSync, rmSync, writeFileSync } from "node:fs";
 import { extname, join } from "node:path";
 import { at } from "../lib/paths.mjs";

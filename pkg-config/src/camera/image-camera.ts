@@ -62,22 +62,22 @@ export function inPixels({ fx, fy, cx, cy }: Pinhole, size: ImageSize | undefine
 /** Difference of focal lengths, as a logarithm, up to which pixels are about square. */
 const SQUARE = 0.05;
 
-/** Whether equal focal lengths in image sizes belong to pixels that are not square, unless both are in one side. */
+/** Whether the focal lengths suggest that both axes are relative to the same side: relative to their own, pixels would not be square. */
 const isOfOneSide = ({ fx, fy }: Pinhole, { width, height }: ImageSize) =>
   Math.abs(Math.log(fx / fy)) < SQUARE && Math.abs(Math.log(width / height)) > SQUARE;
 
-/** The sides of the image in which intrinsics are: each axis in its own, or both in one, by which the principal point is in the middle. */
+/** The side that each axis is relative to: its own or, where that centres the principal point better, the same for both. */
 function sidesOf(camera: Pinhole, size: ImageSize): readonly [number, number] {
   const { width, height } = size;
   const own = [width, height] as const;
   if (!isOfOneSide(camera, size)) return own;
   const distance = ([x, y]: readonly [number, number]) =>
-    Math.max(Math.abs((camera.cx * x) / width - 0.5), Math.abs((camera.cy * y) / height - 0.5));
+    offCentre([(camera.cx * x) / width, (camera.cy * y) / height]);
   const others = [[width, width] as const, [height, height] as const];
   return others.reduce((best, sides) => (distance(sides) < distance(best) ? sides : best), own);
 }
 
-/** Why intrinsics in image sizes may be in other sides. */
+/** Why normalised intrinsics may be relative to other sides. */
 function doubtOfSides(stated: Pinhole, size: ImageSize): string[] {
   if (!isNormalised(stated) || !isOfOneSide(stated, size)) return [];
   const [x, y] = sidesOf(stated, size);
@@ -124,7 +124,8 @@ function isOfShape(own: ImageSize, image: ImageSize): boolean {
 const placeOf = ({ cx, cy }: Pinhole, { width, height }: ImageSize) =>
   [(cx + 0.5) / width, (cy + 0.5) / height] as const;
 
-const offCentre = (place: readonly number[]) => Math.max(...place.map((x) => Math.abs(x - 0.5)));
+/** Distance of a principal point in image sizes from the centre, along the axis where it is larger. */
+export const offCentre = (place: readonly number[]) => Math.max(...place.map((x) => Math.abs(x - 0.5)));
 
 /** Whether the principal point fits the image only after a quarter turn. */
 function isTurned(camera: Pinhole, { width, height }: ImageSize): boolean {
