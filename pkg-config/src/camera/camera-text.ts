@@ -2,7 +2,6 @@
 import { failure } from "../values/error.js";
 import { isNumber } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
-import { offCentre } from "./image-camera.js";
 import { npyNumbers } from "./npy-numbers.js";
 
 type Content = Record<string, unknown>;
@@ -111,10 +110,10 @@ function ofNumbers(text: string): unknown {
   // FoundationStereo writes the baseline in a second line.
   if (numbers.length === 10 && numbers[8] === 1) return { K: numbers.slice(0, 9) };
   if (numbers.length !== 6) return numbers;
-  const distance = (cx: number, cy: number, width: number, height: number) =>
-    width % 1 === 0 && height % 1 === 0 ? offCentre([cx / width, cy / height]) : 1;
+  const offCentre = (cx: number, cy: number, width: number, height: number) =>
+    width % 1 === 0 && height % 1 === 0 ? Math.max(Math.abs(cx / width - 0.5), Math.abs(cy / height - 0.5)) : 1;
   // ARKitScenes' .pincam has the size first, H2O's text behind the intrinsics.
-  const [before, behind] = [distance(e, f, a, b), distance(c, d, e, f)];
+  const [before, behind] = [offCentre(e, f, a, b), offCentre(c, d, e, f)];
   if (Math.min(before, behind) > 0.3) return numbers;
   return before < behind
     ? { width: a, height: b, fx: c, fy: d, cx: e, cy: f }

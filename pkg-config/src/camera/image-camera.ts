@@ -125,7 +125,7 @@ const placeOf = ({ cx, cy }: Pinhole, { width, height }: ImageSize) =>
   [(cx + 0.5) / width, (cy + 0.5) / height] as const;
 
 /** Distance of a principal point in image sizes from the centre, along the axis where it is larger. */
-export const offCentre = (place: readonly number[]) => Math.max(...place.map((x) => Math.abs(x - 0.5)));
+const offCentre = (place: readonly number[]) => Math.max(...place.map((x) => Math.abs(x - 0.5)));
 
 /** Whether the principal point fits the image only after a quarter turn. */
 function isTurned(camera: Pinhole, { width, height }: ImageSize): boolean {
