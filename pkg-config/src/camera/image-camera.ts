@@ -72,7 +72,7 @@ function sidesOf(camera: Pinhole, size: ImageSize): readonly [number, number] {
   const own = [width, height] as const;
   if (!isOfOneSide(camera, size)) return own;
   const distance = ([x, y]: readonly [number, number]) =>
-    offCentre([(camera.cx * x) / width, (camera.cy * y) / height]);
+    Math.max(Math.abs((camera.cx * x) / width - 0.5), Math.abs((camera.cy * y) / height - 0.5));
   const others = [[width, width] as const, [height, height] as const];
   return others.reduce((best, sides) => (distance(sides) < distance(best) ? sides : best), own);
 }
@@ -124,7 +124,6 @@ function isOfShape(own: ImageSize, image: ImageSize): boolean {
 const placeOf = ({ cx, cy }: Pinhole, { width, height }: ImageSize) =>
   [(cx + 0.5) / width, (cy + 0.5) / height] as const;
 
-/** Distance of a principal point in image sizes from the centre, along the axis where it is larger. */
 const offCentre = (place: readonly number[]) => Math.max(...place.map((x) => Math.abs(x - 0.5)));
 
 /** Whether the principal point fits the image only after a quarter turn. */

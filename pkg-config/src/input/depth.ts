@@ -116,8 +116,21 @@ export const unknownUnit = (depthKind: DepthKind) => ({ metres: null, source: de
 
 /** Signatures of the files of depth models: NPZ (also without an array), OpenEXR, TIFF and PFM. */
 const ofDepthModels = [
-  ...["PK\x03\x04", "PK\x05\x06", "v/1\x01", "II*\0", "MM\0*", "II+\0", "MM\0+"],
-  ...["Pf\n", "PF\n", "Pf\r", "PF\r", "Pf ", "PF "],
+  ...[
+    "PK\x03\x04",
+    "PK\x05\x06",
+    "v/1\x01",
+    "II*\0",
+    "MM\0*",
+    "II+\0",
+    "MM\0+",
+    "Pf\n",
+    "PF\n",
+    "Pf\r",
+    "PF\r",
+    "Pf ",
+    "PF ",
+  ],
 ];
 
 /** Whether an array has more than two axes longer than 1: the same module reads point maps. */
