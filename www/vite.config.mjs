@@ -20,7 +20,7 @@ const { OPTIONS } = await import(pathToFileURL(join(compiled, "index.js")).href)
 
 /** Scripts that are loaded when they are needed. */
 const later =
-  /\/src\/(intake|masking|session|export|view3d)\/|\/src\/(alignment\/(advice|video|known-size)|input\/(allowance|archives|names|slices|video-frames)|state\/object-work|commands\/nudges|opening\/case-url|pictures\/(albedo|evidence|pose-thumbnail|thumbnails)|views\/space|ui\/metric-texts|panels\/(advised|after-result|export-panel|scene-list|storage-warnings|time-panel|help-dialog|alternatives|hand-panel|numbers|known-size|options-panel|remedies|details|input-rows))\./;
+  /\/src\/(intake|masking|session|export|view3d)\/|\/src\/(alignment\/(advice|video|known-size)|input\/(allowance|archives|names|slices|video-frames)|state\/object-work|commands\/nudges|opening\/case-url|pictures\/(albedo|evidence|pose-thumbnail|thumbnails)|views\/space|ui\/(metric-texts|number-input)|panels\/(advised|after-result|export-panel|scene-list|storage-warnings|time-panel|help-dialog|alternatives|hand-panel|numbers|known-size|options-panel|remedies|details|input-rows))\./;
 
 /** Whether the page loads a module at first. @param {string} id */
 const isFirst = (id) => (id.startsWith(join(www, "src")) || id.includes("/preact/")) && !later.test(id);

@@ -44,13 +44,20 @@ fn describe(value: &JsValue) -> String {
 
 /// The bytes of a byte array (of this realm or another: a worker's, a test runner's) or an `ArrayBuffer`.
 pub fn to_bytes(argument: &str, value: &JsValue) -> Result<Vec<u8>> {
-    let element_bytes = || Reflect::get(value, &"BYTES_PER_ELEMENT".into()).ok().and_then(|size| size.as_f64());
-    let is_byte_array = ArrayBuffer::is_view(value) && element_bytes() == Some(1.0);
+    let property = |name: &str| Reflect::get(value, &name.into()).unwrap_or_default();
+    let number = |name: &str| property(name).as_f64().unwrap_or_default();
+    let is_byte_array = ArrayBuffer::is_view(value) && number("BYTES_PER_ELEMENT") == 1.0;
     if !is_byte_array && !value.is_instance_of::<ArrayBuffer>() {
         let remedy = "Read files with fs.readFile, blobs and responses with new Uint8Array(await x.arrayBuffer()).";
         return Err(invalid(argument, value, "a Uint8Array", remedy));
     }
-    let bytes = Uint8Array::new(value);
+    // A view, where a new array of another one would be a copy.
+    let bytes = if is_byte_array {
+        let (offset, length) = (number("byteOffset") as u32, number("byteLength") as u32);
+        Uint8Array::new_with_byte_offset_and_length(&property("buffer"), offset, length)
+    } else {
+        Uint8Array::new(value)
+    };
     if bytes.length() as usize > MAX_BUFFER_BYTES {
         let found = format!("{} bytes", bytes.length());
         return Err(too_large(argument, found, format!("at most {MAX_BUFFER_BYTES}")));

@@ -147,7 +147,10 @@ fn read_png(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result
             "Pass the raw depth map, not a rendering of it.",
         ));
     }
-    stored.read(options, kind, &|i| pixels.samples.get(i * channels).map_or(0.0, |&z| f64::from(z)))
+    stored.read_rows(options, kind, &|start, row| {
+        let samples = pixels.samples.get(start * channels..).unwrap_or_default();
+        row.iter_mut().zip(samples.iter().step_by(channels)).for_each(|(to, &z)| *to = z.into());
+    })
 }
 
 /// Of a pixel: red + 256 · green + 65536 · blue; or, with an alpha below 255, the 32-bit float with the bytes blue, green, red
@@ -168,7 +171,7 @@ fn read_npy(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result
     let is_integer = array.header().kind != Kind::Float;
     let stored = Stored { width: array.width, height: array.height, bits, is_integer };
     stored.check_bits(kind, || "an array of 8-bit elements".into())?;
-    stored.read(options, kind, &|i| array.value(i))
+    stored.read_rows(options, kind, &|start, row| array.fill(start, row))
 }
 
 /// Reads depth from an `.npz`, `.exr`, `.tiff`, `.pfm` or `.npy` file, with the camera in it. Three values per pixel are a point

@@ -60,6 +60,9 @@ impl DepthUnit {
     }
 }
 
+/// Writes the values from an index on, row-major, over those of a slice.
+pub(crate) type Fill<'a> = &'a dyn Fn(usize, &mut [f64]);
+
 /// The numbers of a depth file, as its reader passes them on.
 pub(crate) struct Stored {
     pub width: usize,
@@ -70,21 +73,33 @@ pub(crate) struct Stored {
 }
 
 impl Stored {
-    /// The depth map of these values by their index, row-major, and its unit.
-    #[inline(never)]
+    /// [`Self::read_rows`] of values by their index, row-major.
     pub fn read(
         &self,
         options: &DepthReadOptions,
         kind: DepthKind,
         value: &dyn Fn(usize) -> f64,
     ) -> Result<DepthImage> {
+        self.read_rows(options, kind, &|start, row| {
+            row.iter_mut().enumerate().for_each(|(u, to)| *to = value(start + u));
+        })
+    }
+
+    /// The depth map of values of which each row is filled, and its unit.
+    #[inline(never)]
+    pub fn read_rows(&self, options: &DepthReadOptions, kind: DepthKind, fill: Fill<'_>) -> Result<DepthImage> {
         let (scale, unit) = self.unit(options, kind)?;
         let (width, height) = (self.width, self.height);
-        let values = (0..width * height).map(|i| (value(i) * scale) as f32);
+        let mut row = vec![0.0; width];
+        let mut values = Vec::with_capacity(width * height);
+        for v in 0..height {
+            fill(v * width, &mut row);
+            values.extend(row.iter().map(|value| (value * scale) as f32));
+        }
         let values = match kind {
-            DepthKind::Metric | DepthKind::ScaleInvariant => DepthMap::from_metres(width, height, values.collect())?,
+            DepthKind::Metric | DepthKind::ScaleInvariant => DepthMap::from_metres(width, height, values)?,
             DepthKind::AffineInvariant | DepthKind::AffineInvariantDisparity => {
-                let values = values.map(|z| if z.is_finite() { z } else { f32::NAN });
+                let values = values.into_iter().map(|z| if z.is_finite() { z } else { f32::NAN });
                 Image::new("depth", width, height, values.collect())?
             }
         };

@@ -60,9 +60,7 @@ pub(crate) fn read(argument: &'static str, bytes: &[u8], max_pixels: usize) -> R
     }
     let mut reducer = Reducer::new(full, scale, size);
     for (v, row) in pixels.chunks_exact(width * channels).enumerate() {
-        for (u, pixel) in row.chunks_exact(channels).enumerate() {
-            reducer.add(u, v, to_rgb(pixel));
-        }
+        reducer.add_row(v, 0, 1, row.chunks_exact(channels).map(to_rgb));
     }
     let orientation = decoder.exif_data().map(exif::orientation).unwrap_or_default();
     Ok((reducer.finish(argument)?, orientation))

@@ -1,5 +1,6 @@
 //! Mask files.
 
+use crate::depth_image::Fill;
 use crate::guard::{MAX_PIXELS, beginning, unsupported};
 use crate::jpeg;
 use crate::npy::{self, Kind, NpyImage};
@@ -39,13 +40,16 @@ pub fn read_mask(bytes: &[u8]) -> Result<MaskImage> {
     }
     if bytes.starts_with(jpeg::MAGIC) {
         let (image, _) = jpeg::read("mask", bytes, MAX_PIXELS)?;
-        let level = |i: usize| image.data().get(i).and_then(|rgb| rgb.iter().max()).map_or(0.0, |&level| level.into());
-        return outlined(image.width(), image.height(), &Values::of(&level, false));
+        let fill = |start: usize, row: &mut [f64]| {
+            let pixels = image.data().get(start..).unwrap_or_default();
+            row.iter_mut().zip(pixels).for_each(|(to, [r, g, b])| *to = (*r.max(g).max(b)).into());
+        };
+        return outlined(image.width(), image.height(), &Values::of(&fill, false));
     }
     if bytes.starts_with(npy::MAGIC) {
         let array = NpyImage::read("mask", bytes)?;
         let is_float = array.header().kind == Kind::Float;
-        return outlined(array.width, array.height, &Values::of(&|i| array.value(i), is_float));
+        return outlined(array.width, array.height, &Values::of(&|start, row| array.fill(start, row), is_float));
     }
     Err(unsupported(
         "mask",
@@ -69,31 +73,36 @@ fn read_png(bytes: &[u8]) -> Result<MaskImage> {
             pixel.iter().take(pixels.colours()).zip(background).map(|(sample, zero)| sample.abs_diff(zero));
         differences.fold((0, 0.0), |(most, key), sample| (most.max(sample), 65536.0 * key + f64::from(sample)))
     };
-    let pixel_at =
-        |i: usize| pixels.samples.get(i * channels..).and_then(|rest| rest.get(..channels)).unwrap_or_default();
     let levels: Vec<u16> = (pixels.samples.chunks_exact(channels))
         .map(|pixel| if is_cut_out { alpha(pixel) } else { color(pixel).0 })
         .collect();
-    let level = |i: usize| levels.get(i).copied().map_or(0.0, f64::from);
+    let fill = |start: usize, row: &mut [f64]| {
+        let levels = levels.get(start..).unwrap_or_default();
+        row.iter_mut().zip(levels).for_each(|(to, &level)| *to = level.into());
+    };
     // Of a cut-out, the colours may be those of a photo.
-    let key = |i: usize| if is_cut_out && alpha(pixel_at(i)) == 0 { 0.0 } else { color(pixel_at(i)).1 };
-    let key: Option<&dyn Fn(usize) -> f64> = if channels > 1 { Some(&key) } else { None };
-    outlined(info.width, info.height, &Values { value: &level, key, is_float: false, is_cut_out })
+    let key = |pixel: &[u16]| if is_cut_out && alpha(pixel) == 0 { 0.0 } else { color(pixel).1 };
+    let fill_keys = |start: usize, row: &mut [f64]| {
+        let pixels = pixels.samples.get(start * channels..).unwrap_or_default();
+        row.iter_mut().zip(pixels.chunks_exact(channels)).for_each(|(to, pixel)| *to = key(pixel));
+    };
+    let keys: Option<Fill<'_>> = if channels > 1 { Some(&fill_keys) } else { None };
+    outlined(info.width, info.height, &Values { fill: &fill, keys, is_float: false, is_cut_out })
 }
 
-/// The values of a mask by their index, row-major.
+/// The values of a mask.
 struct Values<'a> {
-    value: &'a dyn Fn(usize) -> f64,
-    /// Differs between labels that have the same value, such as colours; `None` where there are no such labels.
-    key: Option<&'a dyn Fn(usize) -> f64>,
+    fill: Fill<'a>,
+    /// Numbers that differ between labels that have the same value, such as colours; `None` where there are no such labels.
+    keys: Option<Fill<'a>>,
     is_float: bool,
     is_cut_out: bool,
 }
 
 impl<'a> Values<'a> {
     /// Values of one channel.
-    fn of(value: &'a dyn Fn(usize) -> f64, is_float: bool) -> Self {
-        Self { value, key: None, is_float, is_cut_out: false }
+    fn of(fill: Fill<'a>, is_float: bool) -> Self {
+        Self { fill, keys: None, is_float, is_cut_out: false }
     }
 }
 
@@ -104,19 +113,22 @@ const HALF_LOGARITHM: f64 = -core::f64::consts::LN_2;
 fn outlined(
     width: usize,
     height: usize,
-    &Values { value, key, is_float, is_cut_out }: &Values<'_>,
+    &Values { fill, keys, is_float, is_cut_out }: &Values<'_>,
 ) -> Result<MaskImage> {
-    let count = width * height;
-    let others = (0..count).map(value).filter(|&value| value != 0.0 && !value.is_nan());
+    let mut row = vec![0.0; width];
     let (mut first, mut low, mut high, mut is_binary) = (None, 0.0_f64, 0.0_f64, true);
     let mut last = 0.0;
-    for value in others {
-        // Most values are those of the pixels before.
-        if value == last {
-            continue;
+    for v in 0..height {
+        fill(v * width, &mut row);
+        for &value in &row {
+            // Most values are those of the pixels before.
+            if value == last || value == 0.0 || value.is_nan() {
+                continue;
+            }
+            last = value;
+            (low, high, is_binary) =
+                (low.min(value), high.max(value), is_binary && value == *first.get_or_insert(value));
         }
-        last = value;
-        (low, high, is_binary) = (low.min(value), high.max(value), is_binary && value == *first.get_or_insert(value));
     }
     // −1 may be true; −6 is no object.
     is_binary &= !is_float || low >= 0.0;
@@ -127,8 +139,8 @@ fn outlined(
         _ => 0.5 * high,
     };
     // One value is one label, unless labels differ by more than their values.
-    let may_have_labels = if is_binary { key.is_some() } else { !is_cut_out };
-    let (lowest, kind) = if may_have_labels && low >= 0.0 && has_labels(width, count, key.unwrap_or(value)) {
+    let may_have_labels = if is_binary { keys.is_some() } else { !is_cut_out };
+    let (lowest, kind) = if may_have_labels && low >= 0.0 && has_labels(width, height, keys.unwrap_or(fill)) {
         (f64::MIN_POSITIVE, ": labels")
     } else if is_binary {
         (first, "")
@@ -144,7 +156,11 @@ fn outlined(
         _ => format!("values above 0, {range}{kind}"),
     };
     let is_object = |value: f64| if is_binary && kind.is_empty() { value == lowest } else { value >= lowest };
-    let object = (0..count).map(|i| u8::from(is_object(value(i)))).collect();
+    let mut object = Vec::with_capacity(width * height);
+    for v in 0..height {
+        fill(v * width, &mut row);
+        object.extend(row.iter().map(|&value| u8::from(is_object(value))));
+    }
     Ok(MaskImage { object: Image::new("mask", width, height, object)?, reading })
 }
 
@@ -155,13 +171,17 @@ const FEW: usize = 8;
 /// Values of soft edges and network outputs rarely do, unless the image was enlarged: then rows repeat, and along a row most
 /// are between their neighbours.
 #[inline(never)]
-fn has_labels(width: usize, count: usize, key: &dyn Fn(usize) -> f64) -> bool {
+fn has_labels(width: usize, height: usize, fill: Fill<'_>) -> bool {
+    let mut row = vec![0.0; width];
     let (mut labels, mut high, mut is_few) = ([0.0; FEW], 0.0_f64, true);
-    for level in (0..count).map(key).filter(|level| *level > 0.0) {
-        high = high.max(level);
-        match labels.iter_mut().find(|label| **label == level || **label == 0.0) {
-            Some(label) => *label = level,
-            None => is_few = false,
+    for v in 0..height {
+        fill(v * width, &mut row);
+        for &level in row.iter().filter(|level| **level > 0.0) {
+            high = high.max(level);
+            match labels.iter_mut().find(|label| **label == level || **label == 0.0) {
+                Some(label) => *label = level,
+                None => is_few = false,
+            }
         }
     }
     if labels[1] == 0.0 {
@@ -170,17 +190,23 @@ fn has_labels(width: usize, count: usize, key: &dyn Fn(usize) -> f64) -> bool {
     let range = if is_few { [0.0, 1.0] } else { [0.05, 0.95] }.map(|share| share * high);
     let is_between = |level: f64| level > range[0] && level < range[1];
     let [mut between, mut flat, mut rows, mut repeated, mut steps, mut ordered] = [0_usize; 6];
-    for row in 1..count / width {
+    let mut above = vec![0.0; width];
+    fill(0, &mut row);
+    for v in 1..height {
+        core::mem::swap(&mut above, &mut row);
+        // The last pixel of the row above is beside the first one.
+        let mut beside = above.last().copied().unwrap_or_default();
+        fill(v * width, &mut row);
         let mut runs = [0.0; 2];
         let (mut is_full, mut is_like) = (false, true);
-        for i in row * width..(row + 1) * width {
-            let (level, above) = (key(i), key(i - width));
+        for (&level, &above) in row.iter().zip(&above) {
             is_full |= level != 0.0;
             is_like &= level == above;
             if is_between(level) {
                 between += 1;
-                flat += usize::from(level == above && level == key(i - 1));
+                flat += usize::from(level == above && level == beside);
             }
+            beside = level;
             let [before, last] = runs;
             if level != last {
                 steps += usize::from(is_between(last));

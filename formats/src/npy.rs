@@ -94,14 +94,25 @@ impl<'a> NpyArray<'a> {
         Ok(Self { header, data })
     }
 
+    /// Writes the elements from an index on, in the row-major order of an array of these sides.
+    pub fn fill(&self, start: usize, sides: [usize; 3], to: &mut [f64]) {
+        let NpyHeader { kind, size, big_endian, fortran_order, .. } = self.header;
+        let elements = self.data.get(start * size..).unwrap_or_default();
+        match (kind, size) {
+            _ if fortran_order || big_endian => {
+                to.iter_mut().enumerate().for_each(|(k, element)| *element = self.at(start + k, sides));
+            }
+            // Most depth maps and masks, several times faster.
+            (Kind::Float, 4) => decode(elements, to, |bytes| f32::from_le_bytes(bytes).into()),
+            (Kind::Unsigned, 2) => decode(elements, to, |bytes| u16::from_le_bytes(bytes).into()),
+            (Kind::Bool | Kind::Unsigned, 1) => decode(elements, to, |[byte]| byte.into()),
+            _ => to.iter_mut().enumerate().for_each(|(k, element)| *element = self.value(start + k)),
+        }
+    }
+
     /// The element at this place of the file.
     pub fn value(&self, place: usize) -> f64 {
         let NpyHeader { kind, size, big_endian, .. } = self.header;
-        // Most depth maps, several times faster.
-        if (kind, size, big_endian) == (Kind::Float, 4, false) {
-            let element = self.data.get(place * 4..).and_then(|rest| rest.first_chunk());
-            return element.map_or(0.0, |bytes| f64::from(f32::from_le_bytes(*bytes)));
-        }
         let mut bytes = [0; 8];
         let element = self.data.get(place * size..).and_then(|rest| rest.get(..size)).unwrap_or_default();
         for (to, from) in bytes.iter_mut().zip(element) {
@@ -136,6 +147,11 @@ impl<'a> NpyArray<'a> {
     }
 }
 
+/// Decodes elements of this many bytes, as many as there are.
+fn decode<const BYTES: usize>(elements: &[u8], to: &mut [f64], number: impl Fn([u8; BYTES]) -> f64) {
+    to.iter_mut().zip(elements.as_chunks().0).for_each(|(to, bytes)| *to = number(*bytes));
+}
+
 /// An image-shaped array: H×W, also with further axes of length 1 before or after these.
 #[derive(Debug)]
 pub(crate) struct NpyImage<'a> {
@@ -162,14 +178,9 @@ impl<'a> NpyImage<'a> {
         &self.array.header
     }
 
-    /// The element with this index in row-major order.
-    pub fn value(&self, index: usize) -> f64 {
-        let place = if self.array.header.fortran_order {
-            index / self.width + self.height * (index % self.width)
-        } else {
-            index
-        };
-        self.array.value(place)
+    /// Writes the elements from an index on, in row-major order.
+    pub fn fill(&self, start: usize, to: &mut [f64]) {
+        self.array.fill(start, [self.height, self.width, 1], to);
     }
 }
 

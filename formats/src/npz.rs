@@ -74,15 +74,18 @@ pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKi
     stored.check_bits(kind, || format!("an array `{}` of 8-bit elements", entry.name))?;
     let mask = archive.mask([height, width])?;
     let camera = archive.camera()?.pinhole(width, height)?;
-    let is_valid = |i: usize| mask.as_ref().is_none_or(|mask| mask.get(i).copied().unwrap_or(false));
     let data = archive.read(entry)?;
     let array = NpyArray::read("depth", &data)?;
-    let keep = |(i, z)| if is_valid(i) { z } else { f64::NAN };
+    let is_valid = |i: usize| mask.as_ref().is_none_or(|mask| mask.get(i).copied().unwrap_or(false));
     let image = match &source {
-        Source::Map(..) => stored.read(options, kind, &|i| keep((i, array.at(i, [height, width, 1]))))?,
+        Source::Map(..) => stored.read_rows(options, kind, &|start, row| {
+            array.fill(start, [height, width, 1], row);
+            row.iter_mut().enumerate().filter(|(u, _)| !is_valid(start + u)).for_each(|(_, z)| *z = f64::NAN);
+        })?,
         Source::Points(..) => {
             let map = NpyPoints::of(array).ok_or_else(|| no_points(entry))?;
-            point_map::read(&stored, options, kind, &|i| map.point(i).map(|x| keep((i, x))))?
+            let point = |i: usize| if is_valid(i) { map.point(i) } else { [f64::NAN; 3] };
+            point_map::read(&stored, options, kind, &point)?
         }
     };
     // Of points beside the depth, at least the camera.

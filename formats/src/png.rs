@@ -122,12 +122,16 @@ impl<'a> PngInfo<'a> {
             }
             let start = (row.row * self.width + row.first) * row.channels;
             let slots = pixels.samples.get_mut(start..).unwrap_or_default();
-            let slots = slots.chunks_mut(row.step * row.channels).flat_map(|slots| &mut slots[..row.channels]);
-            match row.bytes {
-                1 => slots.zip(row.samples).for_each(|(slot, &byte)| *slot = u16::from(byte)),
-                _ => {
-                    let (samples, _) = row.samples.as_chunks();
-                    slots.zip(samples).for_each(|(slot, bytes)| *slot = u16::from_be_bytes(*bytes));
+            // Without interlacing, all samples of a row are beside one another.
+            let (run, step) = if row.step == 1 { (slots.len().max(1), 1) } else { (row.channels, row.step) };
+            let runs = slots.chunks_mut(run * step).zip(row.samples.chunks(run * row.bytes));
+            for (slots, samples) in runs {
+                match row.bytes {
+                    1 => slots.iter_mut().zip(samples).for_each(|(slot, &byte)| *slot = u16::from(byte)),
+                    _ => {
+                        let (samples, _) = samples.as_chunks();
+                        slots.iter_mut().zip(samples).for_each(|(slot, bytes)| *slot = u16::from_be_bytes(*bytes));
+                    }
                 }
             }
         })?;
@@ -183,14 +187,12 @@ pub(crate) fn read_rgb(argument: &'static str, bytes: &[u8], max_pixels: usize) 
     let mut reducer = Reducer::new(full, 1, reduced_size(full, max_pixels));
     let transformations = Transformations::EXPAND | Transformations::STRIP_16;
     info.each_row(argument, bytes, transformations, &mut |row| {
-        for (i, pixel) in row.samples.chunks_exact(row.channels).enumerate() {
-            let color = match *pixel {
-                [grey] | [grey, _] => [grey; 3],
-                [r, g, b, ..] => [r, g, b],
-                [] => [0; 3],
-            };
-            reducer.add(row.first + i * row.step, row.row, color);
-        }
+        let color = |pixel: &[u8]| match *pixel {
+            [grey] | [grey, _] => [grey; 3],
+            [r, g, b, ..] => [r, g, b],
+            [] => [0; 3],
+        };
+        reducer.add_row(row.row, row.first, row.step, row.samples.chunks_exact(row.channels).map(color));
     })?;
     Ok((reducer.finish(argument)?, info.exif.map(exif::orientation).unwrap_or_default()))
 }

@@ -46,15 +46,18 @@ impl Reducer {
         }
     }
 
-    /// Adds the pixel of column `u` and row `v`; pixels outside the image are ignored.
-    pub fn add(&mut self, u: usize, v: usize, color: Rgb) {
-        let (Some(&column), Some(&row)) = (self.columns.get(u), self.rows.get(v)) else { return };
-        let place = row as usize * self.width + column as usize;
-        if let Some(pixel) = self.pixels.get_mut(place) {
-            *pixel = color;
-        }
-        if let Some(sum) = self.sums.get_mut(place) {
-            sum.iter_mut().zip(color).for_each(|(sum, channel)| *sum += u32::from(channel));
+    /// Adds the pixels of row `v`, or every `step`th of them from column `first` on; pixels outside the image are ignored.
+    pub fn add_row(&mut self, v: usize, first: usize, step: usize, colors: impl Iterator<Item = Rgb>) {
+        let Some(&row) = self.rows.get(v) else { return };
+        let row = row as usize * self.width..(row as usize + 1) * self.width;
+        if let Some(pixels) = self.pixels.get_mut(row.clone()) {
+            let pixels = pixels.iter_mut().skip(first).step_by(step);
+            pixels.zip(colors).for_each(|(pixel, color)| *pixel = color);
+        } else if let Some(sums) = self.sums.get_mut(row) {
+            for (&column, color) in self.columns.iter().skip(first).step_by(step).zip(colors) {
+                let sum = &mut sums[column as usize];
+                sum.iter_mut().zip(color).for_each(|(sum, channel)| *sum += u32::from(channel));
+            }
         }
     }
 
@@ -79,7 +82,7 @@ impl Reducer {
 pub(crate) fn reduce(image: &Image<Rgb>, size: [usize; 2]) -> Result<Image<Rgb>> {
     let mut reducer = Reducer::new([image.width(), image.height()], 1, size);
     for (v, row) in image.data().chunks_exact(image.width()).enumerate() {
-        row.iter().enumerate().for_each(|(u, &color)| reducer.add(u, v, color));
+        reducer.add_row(v, 0, 1, row.iter().copied());
     }
     reducer.finish("image")
 }

@@ -42,10 +42,7 @@ pub fn read_webp(bytes: &[u8], as_stored: bool) -> Result<WebpImage> {
     decoder.read_image(&mut pixels).map_err(|error| broken(&error))?;
     let mut reducer = Reducer::new(full, 1, reduced_size(full, MAX_PHOTO_PIXELS));
     for (v, row) in pixels.chunks_exact(full[0] * channels).enumerate() {
-        for (u, pixel) in row.chunks_exact(channels).enumerate() {
-            let &[r, g, b, ..] = pixel else { continue };
-            reducer.add(u, v, [r, g, b]);
-        }
+        reducer.add_row(v, 0, 1, row.chunks_exact(channels).map(|pixel| [pixel[0], pixel[1], pixel[2]]));
     }
     // Some programs write the signature of JPEG's segment before the data.
     let bare = |data: Vec<u8>| data.strip_prefix(b"Exif\0\0").map(<[u8]>::to_vec).unwrap_or(data);

@@ -144,9 +144,10 @@ test("the element in one script, which is that of its workers, loads that and th
   const scripts = await page.evaluate(() =>
     performance.getEntriesByType("resource").flatMap(({ name }) => /\/element\/([^/]*)\.js$/.exec(name)?.[1] ?? []),
   );
-  // three.js imports one of the parts.
-  assert.deepEqual(scripts.sort().slice(-2), ["single", "three"]);
-  assert.ok(scripts.length <= 3, `${scripts}`);
+  // three.js imports one of the parts. The script is listed again when a worker has started with it.
+  const names = [...new Set(scripts)].sort();
+  assert.deepEqual(names.slice(-2), ["single", "three"]);
+  assert.ok(names.length <= 3, `${names}`);
   const workers = page.workers().filter((worker) => worker.url().endsWith("/element/single.js"));
   assert.ok(workers.length > 0);
   assert.deepEqual(errors, []);

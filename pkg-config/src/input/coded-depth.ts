@@ -84,6 +84,8 @@ function factsOf(values: Float32Array | Uint16Array, { metres, isAssumed }: Dept
     sum += value;
     [least, most] = [Math.min(least, value), Math.max(most, value)];
     wholes += Number(Number.isInteger(value));
+    // No code has fractions and values above 1.
+    if (wholes < count && most > 1) return undefined;
     eights += Number(value % 8 === 0);
     if (distinct.size < DISTINCT[1]) distinct.add(value);
   }

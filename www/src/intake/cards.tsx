@@ -10,6 +10,7 @@ import { cameraTitle } from "../panels/input-rows.js";
 import { depthRange } from "../pictures/colours.js";
 import type { CameraSource, Field } from "../state/inputs.js";
 import { Choices, FileButton, Picture } from "../ui/controls.js";
+import { NumberInput } from "../ui/number-input.js";
 import { percent, significant } from "../ui/texts.js";
 import { ASSUMED_FOV_DEG, fovYDegOf } from "./checks.js";
 import { change, choose } from "./draft.js";
@@ -95,10 +96,7 @@ export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedA
   const scale = `${depthScale ?? ""}`;
   const units: readonly (readonly [string, string])[] = depthUnits;
   const choices = units.some(([own]) => own === scale) ? units : [...units, [scale, `${scale} m`] as const];
-  const setScale = (value: string) => {
-    const factor = Number(value);
-    return change((now) => ({ ...now, depthScale: factor > 0 ? factor : null }));
-  };
+  const setScale = (factor: number) => change((now) => ({ ...now, depthScale: factor > 0 ? factor : null }));
   return (
     <Card field="depth" title="Depth map" chosen={file === null ? "" : baseName(file.path)} accept={acceptOf("depth")}>
       <Picture image={image} label="Depth map" class="shot" />
@@ -118,16 +116,14 @@ export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedA
       {kind === "metric" && (
         <label class="field-inline" for="depth-scale">
           <span>Unit</span>
-          <Choices id="depth-scale" value={scale} choices={choices} onChoose={setScale} />
-          <input
+          <Choices id="depth-scale" value={scale} choices={choices} onChoose={(value) => setScale(Number(value))} />
+          <NumberInput
             id="depth-factor"
-            type="number"
-            step="any"
             min="0"
             placeholder="m"
             aria-label="Metres per unit"
             value={scale}
-            onChange={({ currentTarget }) => setScale(currentTarget.value)}
+            onEnter={setScale}
           />
         </label>
       )}
@@ -189,27 +185,21 @@ export function CameraCard({ open }: { open: Draft }) {
         {intrinsics.map((name) => (
           <label key={name} class="field-inline">
             <span>{name}</span>
-            <input
+            <NumberInput
               id={`camera-${name}`}
-              type="number"
-              step="any"
-              inputMode="decimal"
               value={shown?.[name] == null ? "" : significant(shown[name], 7)}
-              onChange={({ currentTarget }) => enter(name, currentTarget.valueAsNumber)}
+              onEnter={(entered) => enter(name, entered)}
             />
           </label>
         ))}
         <label class="field-inline wide">
           <span>Vertical field of view</span>
-          <input
+          <NumberInput
             id="camera-fov"
-            type="number"
-            step="any"
-            inputMode="decimal"
             placeholder={`${ASSUMED_FOV_DEG}`}
             value={camera?.kind === "assumed" ? camera.fovYDeg : fovDeg === null ? "" : significant(fovDeg, 3)}
-            onChange={({ currentTarget: { valueAsNumber } }) =>
-              change((now) => ({ ...now, camera: { kind: "assumed", fovYDeg: valueAsNumber || ASSUMED_FOV_DEG } }))
+            onEnter={(entered) =>
+              change((now) => ({ ...now, camera: { kind: "assumed", fovYDeg: entered || ASSUMED_FOV_DEG } }))
             }
           />
           <span class="unit">°</span>

@@ -4,6 +4,7 @@ import { canTry, setKnownSize, type Trial, takeTrial, trySize } from "../alignme
 import type { ObjectModel } from "../state/object-model.js";
 import { inOrder, sidesOf } from "../state/sides.js";
 import { Choices } from "../ui/controls.js";
+import { NumberInput } from "../ui/number-input.js";
 import { centimetres, orDash, percent } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 
@@ -30,8 +31,8 @@ export function KnownSize({ object, id }: KnownSizeProps) {
   // Without a result, there is nothing yet that a length could be compared with.
   const isReady = object !== null && (isMetric || object.isPlaced) && !workspace.isRunning.value;
 
-  const apply = async (field: HTMLInputElement) => {
-    const wantedM = field.valueAsNumber / 100;
+  const apply = async (wantedCm: number) => {
+    const wantedM = wantedCm / 100;
     const isValid = wantedM > 0 && presentM > 0;
     if (object === null || !isValid || (isMetric && centimetres(wantedM) === centimetres(presentM))) return;
     const factor = wantedM / presentM;
@@ -43,15 +44,12 @@ export function KnownSize({ object, id }: KnownSizeProps) {
       <fieldset class="row known" disabled={!isReady}>
         <legend>Known size</legend>
         <Choices label="Edge" value={`${edge}`} choices={choices} onChoose={(value) => setEdge(Number(value))} />
-        <input
+        <NumberInput
           id={id}
-          type="number"
           min="0"
-          step="any"
-          inputMode="decimal"
           aria-label={`${edges[edge]} in centimetres`}
           value={isMetric && presentM > 0 ? centimetres(presentM) : ""}
-          onChange={({ currentTarget }) => apply(currentTarget)}
+          onEnter={apply}
         />
         <span class="unit">{isMetric ? "cm" : "centimetres, which makes all sizes metric"}</span>
       </fieldset>

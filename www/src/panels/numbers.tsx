@@ -5,6 +5,7 @@ import type { Vector3 } from "sim3align/values/validation";
 import type { ObjectModel } from "../state/object-model.js";
 import { type Nudge, rotationAbout } from "../state/pose.js";
 import { Choices } from "../ui/controls.js";
+import { NumberInput } from "../ui/number-input.js";
 import { useWorkspace } from "../ui/workspace.js";
 
 const axes = ["x", "y", "z"] as const;
@@ -36,27 +37,21 @@ export function Numbers({ object, isReady }: NumbersProps) {
       {axes.map((name, k) => (
         <label key={name} class="field-inline">
           <span>{name}</span>
-          <input
+          <NumberInput
             id={`centre-${name}`}
-            type="number"
             step={unit.value === null ? "0.1" : "0.01"}
-            inputMode="decimal"
             value={centre === undefined ? "" : ((centre[k] ?? 0) / shown).toFixed(2)}
-            onChange={({ currentTarget }) => move(k, currentTarget.valueAsNumber * shown)}
+            onEnter={(entered) => move(k, entered * shown)}
           />
         </label>
       ))}
       <span class="field-inline turn">
         <label for="turn-deg">Turn by</label>
-        <input
+        <NumberInput
           id="turn-deg"
-          type="number"
-          step="any"
-          inputMode="decimal"
           placeholder="90"
-          onChange={({ currentTarget }) => {
-            const degrees = currentTarget.valueAsNumber;
-            currentTarget.value = "";
+          value=""
+          onEnter={(degrees) => {
             if (Number.isFinite(degrees)) apply({ rotation: rotationAbout(directions[axis], degrees) });
           }}
         />

@@ -2,6 +2,7 @@
 import { defaultOptions, MAX_SEED, type Options, choices as values } from "../state/options.js";
 import type { Workspace } from "../state/workspace.js";
 import { Choices, Tip } from "../ui/controls.js";
+import { NumberInput } from "../ui/number-input.js";
 import { useWorkspace } from "../ui/workspace.js";
 
 const qualityTitles: { readonly [Q in Options["quality"]]: string } = {
@@ -104,18 +105,14 @@ function NumberField({ name, title, about, unit = "" }: NumberProps) {
       <label for={id}>{title}</label>
       <Tip label={title.toLowerCase()}>{about}</Tip>
       <span class="with-unit">
-        <input
+        <NumberInput
           id={id}
-          type="number"
           min="0"
           max={name === "seed" ? MAX_SEED : undefined}
-          step={name === "seed" ? 1 : "any"}
-          inputMode="decimal"
+          step={name === "seed" ? "1" : "any"}
           placeholder="unknown"
           value={options.value[name] ?? ""}
-          onChange={({ currentTarget: { valueAsNumber } }) =>
-            setOption(name, (Number.isNaN(valueAsNumber) ? defaultOptions[name] : valueAsNumber) as never)
-          }
+          onEnter={(entered) => setOption(name, (Number.isNaN(entered) ? defaultOptions[name] : entered) as never)}
         />
         <span class="unit">{unit}</span>
       </span>

@@ -1,5 +1,5 @@
 /** Controls that several panels use. */
-import type { ComponentChildren } from "preact";
+import type { ComponentChildren, TargetedEvent } from "preact";
 import { useEffect, useId, useRef, useState } from "preact/hooks";
 import { filesOf } from "../input/files.js";
 import type { NamedFile } from "../state/inputs.js";
@@ -47,6 +47,23 @@ export const Check = ({ title, onCheck, ...box }: CheckProps) => (
   </label>
 );
 
+/**
+ * What a field needs to keep what is being typed, however often it is drawn meanwhile, until it is entered or left.
+ * @param value - What it shows otherwise.
+ */
+export function useTyped(value: string | number, onEnter: (text: string) => void) {
+  const [typed, setTyped] = useState<string | null>(null);
+  return {
+    value: typed ?? value,
+    onInput: ({ currentTarget }: TargetedEvent<HTMLInputElement>) => setTyped(currentTarget.value),
+    onChange: ({ currentTarget }: TargetedEvent<HTMLInputElement>) => {
+      setTyped(null);
+      onEnter(currentTarget.value);
+    },
+    onBlur: () => setTyped(null),
+  };
+}
+
 interface TextFieldProps {
   id: string;
   title: string;
@@ -54,25 +71,13 @@ interface TextFieldProps {
   onEnter(text: string): void;
 }
 
-/** A field that keeps what is being typed, however often it is drawn meanwhile, until it is entered or left. */
-export function TextField({ id, title, value, onEnter }: TextFieldProps) {
-  const [typed, setTyped] = useState<string | null>(null);
-  return (
-    <label class="field-inline">
-      <span>{title}</span>
-      <input
-        id={id}
-        value={typed ?? value}
-        onInput={({ currentTarget }) => setTyped(currentTarget.value)}
-        onChange={({ currentTarget }) => {
-          setTyped(null);
-          onEnter(currentTarget.value);
-        }}
-        onBlur={() => setTyped(null)}
-      />
-    </label>
-  );
-}
+/** A field for a text. */
+export const TextField = ({ id, title, value, onEnter }: TextFieldProps) => (
+  <label class="field-inline">
+    <span>{title}</span>
+    <input id={id} {...useTyped(value, onEnter)} />
+  </label>
+);
 
 interface FileButtonProps {
   id: string;
