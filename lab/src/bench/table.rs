@@ -1,6 +1,6 @@
 //! A Markdown table of results.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::records::Record;
 use super::result::ResultRow;
@@ -9,20 +9,25 @@ use crate::numbers::{cell, mean, median};
 /// Confidence from which on callers trust a pose.
 const TRUSTED: f64 = 0.9;
 
+/// The name of the group of all cases.
+const ALL: &str = "all";
+
 /// Success and errors of each row: of all cases, by tier and by class.
 pub fn report(records: &[Record]) -> String {
     let mut out = String::from(
         "| row | cases | n | strict % | loose % | scale % | rotation ° | place % | ≥ .9: right of | ms |\n",
     );
     out += "|---|---|---|---|---|---|---|---|---|---|\n";
-    let keys: [fn(&ResultRow) -> &str; 3] = [|_| "all", |result| &result.tier, |result| &result.class];
-    for (order, key) in keys.iter().enumerate() {
+    let keys: [fn(&ResultRow) -> &str; 3] = [|_| ALL, |result| &result.tier, |result| &result.class];
+    for key in keys {
+        let mut names = BTreeSet::new();
         let mut groups: BTreeMap<(&str, &str), Vec<&ResultRow>> = BTreeMap::new();
         for Record { row, result, .. } in records {
+            names.insert(key(result));
             groups.entry((row, key(result))).or_default().push(result);
         }
         // Tiers and classes only where there are several.
-        if order == 0 || groups.len() > 1 {
+        if names.len() > 1 || names.contains(ALL) {
             for ((row, group), results) in groups {
                 out += &format!("| {row} | {group} | {} |\n", cells(&results).join(" | "));
             }
@@ -47,7 +52,7 @@ fn cells(results: &[&ResultRow]) -> Vec<String> {
         error(0, 100.0),
         error(1, 1.0),
         error(2, 100.0),
-        format!("{right} of {}", trusted.len()),
+        if trusted.is_empty() { "–".into() } else { format!("{right} of {}", trusted.len()) },
         cell(median(results.iter().filter_map(|r| r.ms).collect()), 0),
     ]
 }
