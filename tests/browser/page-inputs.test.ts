@@ -89,6 +89,8 @@ test("images of one folder, and case folders, are scenes of their own", async (o
   await page.selectOption("#scene-choice", "1");
   await opened.sheet();
   assert.match((await sheet.locator('[data-field="depth"]').textContent()) ?? "", /000036\.png/);
+  // The camera file has one camera, which has no number.
+  assert.equal(await sheet.locator('.card[data-field="camera"]').getAttribute("data-wrong"), "false");
   const meshes = await page
     .locator(".pair select")
     .evaluateAll((all) => all.map((one) => (one as HTMLSelectElement).selectedOptions[0]?.textContent));

@@ -59,6 +59,17 @@ for (const [name, browser, isForced, expected] of modes) {
   });
 }
 
+test("a new scene knows no pose of the one before, though its objects have the same ids", async () => {
+  const { page, facts, colours } = await openCube(webGl);
+  const place = [placeOf(facts, ...pixelOf(facts, 0, 0, 0.75))];
+  assert.ok(isGreen((await colours(place))[0]));
+  await page.evaluate(async () => {
+    harness.show();
+    await harness.view.setObjects([harness.object("cube", "#00c040")]);
+  });
+  assert.ok(!isGreen((await colours(place))[0]));
+});
+
 test("glTF node transforms are applied, and an invalid GLB leaves the view unchanged", async () => {
   const { page, errors, facts, colours } = await openCube(webGl, false, "glb");
   const [u, v] = pixelOf(facts, 0, 0, 0.75);

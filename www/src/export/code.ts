@@ -1,4 +1,6 @@
 /** The code that repeats the scene that is shown: JavaScript, and the command line. */
+
+import { imageIdIn } from "../input/reading.js";
 import { sampleUrl } from "../opening/samples.js";
 import type { CameraSource, Inputs, NamedFile, ObjectFiles } from "../state/inputs.js";
 import { defaultOptions } from "../state/options.js";
@@ -43,7 +45,8 @@ const filesOf = (inputs: Inputs): NamedFile[] =>
 /** A program for Node or, with a sample, for browsers as well. */
 export function javascript(): string {
   const inputs = page.inputs.peek();
-  const { depth, depthKind, depthScale, imageId, objects, photo, resizeMasks, sample } = inputs;
+  const { depth, depthKind, depthScale, objects, photo, resizeMasks, sample } = inputs;
+  const imageId = imageIdIn(cameraFile(inputs), inputs.imageId);
   const read = (file: NamedFile | null | undefined) => `await read(${JSON.stringify(file?.path ?? "")})`;
   const camera = cameraOf(inputs.camera);
   const view = [
@@ -52,7 +55,7 @@ export function javascript(): string {
     depthKind === null || depthKind === "metric" ? "" : `depthKind: "${depthKind}",`,
     camera === null ? "" : `camera: ${camera.numbers},`,
     cameraFile(inputs) === null ? "" : `cameraFile: ${read(cameraFile(inputs))},`,
-    cameraFile(inputs) === null || imageId === null ? "" : `imageId: "${imageId}",`,
+    imageId === null ? "" : `imageId: "${imageId}",`,
     photo === null ? "" : `image: ${read(photo)},`,
     resizeMasks ? 'resizeMask: "nearest",' : "",
   ];
@@ -103,7 +106,7 @@ const quoted = (text: string) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${tex
 /** One command where the files lie as `scene` reads them, otherwise one for each object. Samples are downloaded first. */
 export function commands(): string {
   const inputs = page.inputs.peek();
-  const { depth, depthKind, depthScale, imageId, objects, photo, resizeMasks, sample } = inputs;
+  const { depth, depthKind, depthScale, objects, photo, resizeMasks, sample } = inputs;
   const paths = filesOf(inputs).map(({ path }) => path);
   const download = `curl --create-dirs -o '#1' '${sampleUrl("")}{${paths.join()}}'`;
   const camera = cameraOf(inputs.camera)?.option ?? cameraFile(inputs)?.path;
@@ -121,7 +124,7 @@ export function commands(): string {
   const reading = [
     ...option("depth-scale", depthScale),
     ...option("depth-kind", depthKind === "metric" ? null : depthKind),
-    ...option("image-id", imageId !== null && cameraFile(inputs) !== null ? imageId : null),
+    ...option("image-id", imageIdIn(cameraFile(inputs), inputs.imageId)),
     ...option("resize-mask", resizeMasks ? "nearest" : null),
   ];
   const folder = depth?.path.slice(0, depth.path.lastIndexOf("/")) ?? "";

@@ -180,12 +180,23 @@ const messageOf = ({ message }: { message: string }) => message;
 
 const isSameSize = (a: ImageSize, b: ImageSize | null) => a.width === b?.width && a.height === b.height;
 
+/** Camera files to which the number in the name of a depth map says nothing. */
+const withoutIds = new WeakSet<NamedFile>();
+
+/** The image of a camera file, if the file tells images apart. */
+export const imageIdIn = (file: NamedFile | null, imageId: string | null): string | null =>
+  file === null || withoutIds.has(file) ? null : imageId;
+
 /** The camera of a source, whose intrinsics may depend on the size of the image. */
 async function cameraFrom(source: CameraSource | null, imageId: string | null): Promise<Camera> {
   if (source === null) return cameraOf({});
   if (source.kind === "file") {
     if (await isCut(source.file)) throw new Error("The file is cut off: its JSON does not end. Export it again.");
-    return cameraOf({ cameraFile: await source.file.bytes(), ...(imageId !== null && { imageId }) });
+    const cameraFile = await source.file.bytes();
+    const ofImage = imageId === null ? null : await cameraOf({ cameraFile, imageId }).catch(() => null);
+    if (ofImage !== null) return ofImage;
+    withoutIds.add(source.file);
+    return cameraOf({ cameraFile });
   }
   const { kind: _, ...camera } = source;
   return cameraOf({ camera });

@@ -130,7 +130,7 @@ function Row({ inputs, object, read, i, ground, width }: RowProps) {
         <span class="path" title={object.mask?.file.path}>
           {maskTitle(object)}
         </span>
-        <span class="quiet">{read.maskReading}</span>
+        <span class="quiet">{read.maskReading && `Object: ${read.maskReading}`}</span>
         {ground !== null && <MarkButton i={i} title={mask === null ? "Mark" : "Mark again"} />}
       </div>
       <span class="arrow" aria-hidden="true">

@@ -77,7 +77,11 @@ export function Sheet() {
           {summary(open)}
         </p>
         <button type="button" id="intake-open" class="primary" disabled={!canOpen} onClick={accept}>
-          {open.isEdit ? "Apply and align" : "Align"}
+          {open.isEdit
+            ? "Apply and align"
+            : open.scenes.length > 1 && !open.isVideo
+              ? `Align all ${open.scenes.length}`
+              : "Align"}
         </button>
       </footer>
       <Marking open={open} ground={shown} />

@@ -110,7 +110,7 @@ function NumberField({ name, title, about, unit = "" }: NumberProps) {
           min="0"
           max={name === "seed" ? MAX_SEED : undefined}
           step={name === "seed" ? "1" : "any"}
-          placeholder="unknown"
+          placeholder="none"
           value={options.value[name] ?? ""}
           onEnter={(entered) => setOption(name, (Number.isNaN(entered) ? defaultOptions[name] : entered) as never)}
         />

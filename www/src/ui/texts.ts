@@ -4,7 +4,8 @@ import type { Metrics, Stage } from "sim3align";
 /** Rounded to significant digits, without trailing zeros. */
 export const significant = (x: number, digits: number): string => String(Number(x.toPrecision(digits)));
 
-export const percent = (share: number): string => `${Math.round(100 * share)} %`;
+/** Rounded down: 0.986 is not 99 % or more. */
+export const percent = (share: number): string => `${Math.floor(100 * share + 1e-9)} %`;
 
 /** Metres as centimetres: to 0.1 mm below 10 cm, otherwise to 1 mm. */
 export const centimetres = (m: number, largestM = m): string => (100 * m).toFixed(Math.abs(largestM) < 0.1 ? 2 : 1);

@@ -144,8 +144,9 @@ export class SceneView {
     });
   }
 
-  /** Replaces the point cloud and resets the viewpoint. */
+  /** Replaces the point cloud, forgets all poses, and resets the viewpoint. */
   setScene(scene: SceneInput): void {
+    this.poses.clear();
     this.cloud?.dispose();
     this.scene = scene;
     const { near, far, frustum } = colours(this.display.theme, this.host);

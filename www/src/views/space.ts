@@ -126,6 +126,7 @@ function subscribe(workspace: Workspace, view: SceneView, isDragging: () => bool
         return followPose(workspace, view, object, waits, isDragging);
       });
       isFirst = false;
+      view.frame(true);
       view.select(selected.peek()?.id ?? null);
     }, console.error);
   });
