@@ -91,7 +91,7 @@ function rowHtml(name: string, row: Row, hasPictures: boolean): string {
   const folder = `cases/${encodeURIComponent(fileName(name))}`;
   const images = pictureNames.map((picture) => {
     const text = `alt="${casePictures[picture]}" title="${casePictures[picture]}"`;
-    return hasPictures ? `<td><img src="${folder}/${picture}.png" ${text} width=160 height=120 loading=lazy>` : "<td>";
+    return hasPictures ? `<td><img src="${folder}/${picture}.png" ${text} width=120 height=90 loading=lazy>` : "<td>";
   });
   const messages = (error === undefined ? warnings : [error, ...warnings]).map(messageHtml);
   const cell = (column: ColumnName) => `<td data-key="${numberIn(row, column) ?? ""}">${cellOf(row, column)}`;
@@ -106,9 +106,9 @@ const style = `
 :root { color-scheme: light; font: 14px/1.4 system-ui, sans-serif; color: #1d2530; background: #f6f7f9; }
 body { margin: 0; } h1 { font-size: 17px; margin: 12px 16px; }
 table { border-collapse: collapse; background: #fff; font-variant-numeric: tabular-nums; }
-thead th { position: sticky; top: 0; background: #eef1f4; white-space: nowrap; }
-th, td { padding: 4px 8px; border-bottom: 1px solid #dfe3e8; text-align: left; vertical-align: top; font-weight: 400; }
-tbody th { font-weight: 600; min-width: 8em; max-width: 16em; overflow-wrap: anywhere; } img { display: block; border-radius: 3px; }
+thead th { position: sticky; top: 0; background: #eef1f4; font-size: 12px; vertical-align: bottom; }
+th, td { padding: 4px 6px; border-bottom: 1px solid #dfe3e8; text-align: left; vertical-align: top; font-weight: 400; }
+tbody th { font-weight: 600; min-width: 7em; max-width: 16em; overflow-wrap: anywhere; } img { display: block; border-radius: 3px; }
 thead button { all: unset; cursor: pointer; font-weight: 600; } :focus-visible { outline: 2px solid #1660c4; }
 [aria-sort="ascending"] button::after { content: " ▲" / ""; } [aria-sort="descending"] button::after { content: " ▼" / ""; }
 details { max-width: 22em; font-size: 12px; color: #6a4a00; } .failed { color: #a3211b; }
