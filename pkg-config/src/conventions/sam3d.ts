@@ -61,11 +61,12 @@ export function fromSam3d(layout: Sam3dLayout, options: { vertices?: Sam3dVertic
 }
 
 function quaternionIn(rotation: unknown): Quaternion {
-  const [argument, expected] = ["layout.rotation", "a quaternion: four finite numbers, w first"];
+  const argument = "layout.rotation";
+  const expected = "a quaternion: four finite numbers, w first";
   if (flattened(rotation)?.length !== 9) return finiteNumbers(argument, rotation, 4, expected) as Quaternion;
   // Whoever has a matrix has mostly a pose of another program.
   const remedy =
-    "SAM 3D Objects writes the quaternion w, x, y, z. A pose in OpenCV's frame belongs in initial.json of a scene folder, without --sam3d, or in the option initial.";
+    "SAM 3D Objects writes the quaternion w, x, y, z. A pose in OpenCV's frame belongs in initial.json, without --sam3d.";
   throw failure("WRONG_LENGTH", argument, "9 numbers", expected, remedy);
 }
 
