@@ -56,8 +56,21 @@ First paint after ${Math.round(paint ?? 0)} ms, result after ${Math.round(aligne
   }
 }
 
+const usage = `Usage: npm start -- [options]
+
+Builds everything, serves the demo page on this machine, and opens it.
+
+Options:
+  --check     a headless Chromium shows the page; prints its first result and the times to it, and ends
+  --no-open   leaves the browser closed, and prints the address only
+  -h, --help  display help for command`;
+
 await script(async () => {
-  const { values } = parseArgs({ options: { check: { type: "boolean" }, "no-open": { type: "boolean" } } });
+  const { values } = parseArgs({
+    options: { check: { type: "boolean" }, "no-open": { type: "boolean" }, help: { type: "boolean", short: "h" } },
+  });
+  // No package is installed yet, and so no parser that would write this.
+  if (values.help) return console.log(usage);
   await buildSite();
   const server = await serve(siteDir, PORT);
   if (values.check) return check(server.url).finally(server.close);

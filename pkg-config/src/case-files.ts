@@ -111,7 +111,7 @@ export function filesOf(files: CaseFiles, { image = true }: ReadCaseOptions, pla
     const name = find(part);
     if (name !== undefined) return name;
     const others = unread().filter((other) => partOf(other) === undefined);
-    const found = `no such file in ${place}${others.length === 0 ? "" : `, beside ${listed(others)}`}`;
+    const found = `no ${part} file in ${place}${others.length === 0 ? "" : `, beside ${listed(others)}`}`;
     throw fileNotFound(owner ?? part, found, namesOf(part).join(" or "));
   };
   const viewNames = () => withoutUndefined({ camera: find("camera"), image: find("image"), truth: find("truth") });

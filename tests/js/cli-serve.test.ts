@@ -9,8 +9,19 @@ import { files, folder, writeCase } from "../support/command-line.js";
 import { commandLine, repository } from "../support/environment.js";
 import { withoutTimes } from "../support/results.js";
 import { mesh, view } from "../support/scene.js";
+import { tableFiles } from "../support/table.js";
 
 writeCase("cases/blob", files);
+writeCase("table", tableFiles());
+const { "depth.npy": depthFile, "mask.png": maskFile, "mesh.glb": meshFile, "camera.json": cameraFile } = files;
+const inColumns = {
+  "mesh/blob.glb": meshFile,
+  "camera.json": cameraFile,
+  "depth/0.npy": depthFile,
+  "masks/0.png": maskFile,
+};
+writeCase("columns", { ...inColumns, "depth/1.npy": depthFile });
+writeCase("masked", { ...inColumns, "depth/1.npy": depthFile, "masks/1.png": maskFile });
 const { width, height, depth, mask, camera } = view;
 const options = { quality: "fast", seed: 3 } as const;
 const inline = (array: Float32Array | Uint8Array | Uint32Array, shape?: number[]) => ({
@@ -50,6 +61,7 @@ test("a folder, files and arrays have the result of align; each line has an answ
   const answers = served(
     [
       { id: "folder", case: "cases/blob", options },
+      { id: "one frame with a mask", case: "columns", options },
       { id: "files", ...inFolder, options },
       { id: "bytes", ...inFolder, mask: { base64: Buffer.from(files["mask.png"]).toString("base64") }, options },
       { id: "arrays", ...arrays, options },
@@ -66,30 +78,42 @@ test("a folder, files and arrays have the result of align; each line has an answ
       { id: "option", case: "cases/blob", options: { quality: "none" } },
       { id: "width", case: "cases/blob", width },
       { id: "number", case: 5 },
+      { id: "scene", case: "table" },
+      { id: "frames", case: "masked" },
       { id: "two cameras", ...inFolder, cameraFile: inFolder.camera },
     ],
     1,
   );
   const aligner = await createAligner();
   const expected = await aligner.align({ depth, width, height, mask, mesh, camera }, options);
-  for (const id of ["folder", "files", "bytes", "arrays", "camera file"]) {
+  for (const id of ["folder", "one frame with a mask", "files", "bytes", "arrays", "camera file"]) {
     const { depthUnit: _, maskReading: __, ...found } = answers.get(id).result;
     const { depthUnit: ___, ...own } = JSON.parse(JSON.stringify(expected));
     assert.deepEqual(withoutTimes(found), withoutTimes(own), id);
   }
   assert.ok(Math.abs(answers.get("points").result.scale / expected.scale - 1) < 0.01);
   const codes = {
-    6: "INVALID_ARGUMENT",
-    7: "FILE_NOT_FOUND",
-    8: "INVALID_ARGUMENT",
+    7: "INVALID_ARGUMENT",
+    8: "FILE_NOT_FOUND",
     9: "INVALID_ARGUMENT",
+    10: "INVALID_ARGUMENT",
     option: "INVALID_OPTION",
     width: "INVALID_ARGUMENT",
     number: "INVALID_ARGUMENT",
     "two cameras": "INVALID_ARGUMENT",
+    scene: "INVALID_ARGUMENT",
+    frames: "INVALID_ARGUMENT",
   };
   for (const [id, code] of Object.entries(codes)) {
     assert.equal(answers.get(Number.isNaN(Number(id)) ? id : Number(id)).error.code, code, id);
+  }
+  const messages = {
+    10: /found a case beside camera,/,
+    scene: /found a scene at table.*"sim3align scene"/,
+    frames: /found 2 frames at masked.*"sim3align align".*"sim3align track"/,
+  };
+  for (const [id, message] of Object.entries(messages)) {
+    assert.match(answers.get(id === "10" ? 10 : id).error.message, message);
   }
 });
 

@@ -29,6 +29,7 @@ const usage: Record<string, Record<string, RegExp>> = {
     "check table": /table is a scene, not a case/,
     "track table": /table is a scene, not a video/,
     "scene blob": /blob is a case, not a scene: pass it to "sim3align align"/,
+    "scene views": /pass it to "sim3align align", or as a video to "sim3align track"\./,
     "align z*": /z\*: no folder matches the pattern/,
     "align [z-a]*": /\[z-a\]\*: not a pattern/,
     "track empty": /frame_/,

@@ -208,5 +208,5 @@ test("the usual names of each part are found, in any case; what is not read is n
   ] as const)
     await rejectsWith(() => readCase({ ...files, [name]: text }), `INVALID_ARGUMENT ${part}`, /one of them/);
   const unknown = { ...withoutMask, "mask.bmp": photo };
-  await rejectsWith(() => readCase(unknown), "FILE_NOT_FOUND mask", /no such file in the files, beside mask\.bmp/);
+  await rejectsWith(() => readCase(unknown), "FILE_NOT_FOUND mask", /no mask file in the files, beside mask\.bmp/);
 });

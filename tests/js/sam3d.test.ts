@@ -126,7 +126,13 @@ const damaged: [what: string, files: Files, fault: Fault, words: RegExp][] = [
   ["two poses", { ...whole, "a.json": layout }, "INVALID_ARGUMENT objects/a", /a\.json and a\/pose\.json/],
   ["no object", { "pointmap.npy": points, "0.png": mask }, "FILE_NOT_FOUND scene", /no objects/],
   ["half a pose", { ...whole, "a/pose.json": '{"rotation": [1' }, "CORRUPT_FILE a/pose.json", /JSON/],
-  ["a matrix", { ...whole, "a/pose.json": { ...layout, rotation: [1, 0, 0] } }, "WRONG_LENGTH a/pose.json", /w first/],
+  ["a vector", { ...whole, "a/pose.json": { ...layout, rotation: [1, 0, 0] } }, "WRONG_LENGTH a/pose.json", /w first/],
+  [
+    "a matrix",
+    { ...whole, "a/pose.json": { ...layout, rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1] } },
+    "WRONG_LENGTH a/pose.json",
+    /initial\.json/,
+  ],
   ["no place", { ...whole, "a/pose.json": { ...layout, translation: null } }, "INVALID_ARGUMENT a/pose.json", /three/],
 ];
 for (const [what, files, fault, words] of damaged) {

@@ -185,13 +185,19 @@ async function alignCase(aligner: Aligner, task: CaseToDo, flags: Flags, caseRun
     return alignView(aligner, task, await task.read(), flags, caseRun);
   }
   const opened = await openFrames(folder, caseSettings(flags));
-  const [only] = opened.views;
-  if (only === undefined || !isOneView(opened)) return alignFrames(aligner, task, opened, flags, caseRun);
-  const frame = await opened.read(only);
+  const view = isOneView(opened) ? await onlyView(folder, opened) : undefined;
+  if (view === undefined) return alignFrames(aligner, task, opened, flags, caseRun);
+  return alignView(aligner, task, view, flags, caseRun);
+}
+
+/** The view of frames of which one is to be aligned; `undefined` for several, and without a mask. */
+export async function onlyView(folder: string, opened: Frames): Promise<CaseView | undefined> {
+  const [only, ...others] = opened.views;
+  if (only === undefined || others.length > 0) return undefined;
+  const { truth, ...frame } = await opened.read(only);
+  const input = inputOfFrame(frame, opened.mesh);
   const { files, unread } = opened.found();
-  const found = { folder, files: { ...frame.found.files, ...files }, unread };
-  const input = inputOfFrame(frame, opened.mesh) as AlignInput;
-  return alignView(aligner, task, { ...frame, input, found }, flags, caseRun);
+  return input && { input, truth, found: { folder, files: { ...frame.found.files, ...files }, unread } };
 }
 
 async function alignView(

@@ -14,7 +14,7 @@ import { resolveView } from "../input/resolve.js";
 import { fileReaders } from "../modules/readers.js";
 import type { SceneOnDisk } from "../scene-folder.js";
 import { toMjcf } from "../simulators/mjcf.js";
-import { type SimulatorObject, type SimulatorScene, simulatorScene } from "../simulators/scene.js";
+import { type SimulatorBody, type SimulatorObject, type SimulatorScene, simulatorScene } from "../simulators/scene.js";
 import { toUrdf } from "../simulators/urdf.js";
 import { toUsd } from "../simulators/usd.js";
 import type { Sim3Like } from "../types/argument-types.js";
@@ -113,7 +113,8 @@ export async function writeSceneFiles(
   if (mjcf === undefined && urdf === undefined && usd === undefined) return [];
   const { support } = result;
   const options = { support, ...withoutUndefined({ camera, density, maxParts: parts, rest }) };
-  const simulated = await simulatorScene(await simulatorObjects(scene, result, upright), options);
+  const objects = await simulatorObjects(scene, result, upright);
+  const simulated = await simulatorScene(objects, options);
   const writeAll = (flag: string, folder: string, texts: Record<string, string>) => {
     for (const [name, text] of Object.entries(texts))
       files.write({ flag, path: join(folder, name), isOwn: isExport }, text);
@@ -121,19 +122,27 @@ export async function writeSceneFiles(
   if (mjcf !== undefined) writeAll("--mjcf", mjcf, toMjcf(simulated));
   if (urdf !== undefined) writeAll("--urdf", urdf, toUrdf(simulated));
   if (usd !== undefined) files.write({ flag: "--usd", path: usd, isOwn: isExport }, toUsd(simulated));
-  return linesOf(simulated);
+  return linesOf(simulated, objects);
 }
 
-function linesOf({ bodies, supportHeightM }: SimulatorScene): string[] {
-  const ground = `ground: ${fixed(-1000 * supportHeightM, 1)} mm above the support, where most objects stand`;
+function linesOf({ bodies, hasGround, supportHeightM }: SimulatorScene, objects: readonly SimulatorObject[]): string[] {
+  const side = supportHeightM > 0 ? "below" : "above";
+  const ground = `ground: ${fixed(1000 * Math.abs(supportHeightM), 1)} mm ${side} the support, where most objects stand`;
   const motion = (moveM: number, turnDeg: number) => `${fixed(1000 * moveM, 1)} mm and turned ${fixed(turnDeg, 1)}°`;
-  const lines = bodies.map(({ name, isFixed, mass, movedM, turnedDeg, rest, cutM, parts, wallsJoined }) => {
+  const whyFixed = ({ rest }: SimulatorBody, on: SimulatorObject["restsOn"]) => {
+    if (rest !== null) return `rest needs it moved ${motion(rest.moveM, rest.turnDeg)}`;
+    const isCarried = hasGround && (on === "support" || typeof on === "number");
+    return isCarried ? "it would not stay at rest there" : "it rests on nothing in the scene";
+  };
+  const lines = bodies.map((body, i) => {
+    const { name, isFixed, mass, movedM, turnedDeg, cutM, parts, wallsJoined } = body;
     const moved = movedM === 0 && turnedDeg === 0 ? "where it was found" : `moved ${motion(movedM, turnedDeg)} to rest`;
     const cut = cutM > 0 ? `, its parts cut by ${fixed(1000 * cutM, 1)} mm from below` : "";
-    const needed = isFixed && rest !== null ? `, as rest needs it moved ${motion(rest.moveM, rest.turnDeg)}` : "";
-    const state = isFixed ? `fixed where it was found${needed}` : `free, ${moved}${cut}`;
+    const fixedFor = () => `fixed where it was found, as ${whyFixed(body, objects[i]?.restsOn)}`;
+    const state = isFixed ? fixedFor() : `free, ${moved}${cut}`;
+    const count = `${parts.length} convex ${parts.length === 1 ? "part" : "parts"}`;
     const joined = wallsJoined === null ? "" : ` for ${wallsJoined} walls, so that openings are closed (--parts)`;
-    return `${name}: ${fixed(mass, 3)} kg, ${parts.length} convex parts${joined}, ${state}`;
+    return `${name}: ${fixed(mass, 3)} kg, ${count}${joined}, ${state}`;
   });
   return supportHeightM === 0 ? lines : [ground, ...lines];
 }

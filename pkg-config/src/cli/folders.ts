@@ -23,10 +23,15 @@ export interface FolderKind {
   is(folder: string): boolean;
 }
 
+/** Whether names are those of the folders of FoundationPose. */
+const isColumns = (names: readonly string[]) => names.includes("mesh") && names.includes("depth");
 const hasMesh = (folder: string) => {
   const names = namesIn(folder);
-  // A mesh, or the folders of FoundationPose.
-  return names.some((name) => partOf(name) === "mesh") || (names.includes("mesh") && names.includes("depth"));
+  return names.some((name) => partOf(name) === "mesh") || isColumns(names);
+};
+const hasFrames = (folder: string) => {
+  const names = namesIn(folder);
+  return isColumns(names) || names.some((name) => name.startsWith("frame_"));
 };
 
 export const caseKind: FolderKind = { noun: "case", mark: "a mesh", command: "align", is: hasMesh };
@@ -102,7 +107,11 @@ function refuseOther({ noun, is }: FolderKind, folder: string): void {
   if (is(folder)) return;
   const other = [sceneKind, caseKind].find((kind) => kind.noun !== noun && kind.is(folder));
   if (other !== undefined) {
-    throw new UsageError(`${folder} is a ${other.noun}, not a ${noun}: pass it to "sim3align ${other.command}".`);
+    const isVideo = other === caseKind && hasFrames(folder);
+    const track = isVideo ? `, or as a video to "sim3align ${videoKind.command}"` : "";
+    throw new UsageError(
+      `${folder} is a ${other.noun}, not a ${noun}: pass it to "sim3align ${other.command}"${track}.`,
+    );
   }
   if (namesIn(folder).some((name) => partOf(name) !== undefined)) return;
   const inside = (path: string, depth: number): boolean =>

@@ -157,7 +157,7 @@ export class JsonlFile {
     const names = [...new Set([...Object.keys(before), ...Object.keys(now)])];
     const differing = names.filter((name) => !isDeepStrictEqual(before[name], now[name]));
     if (differing.length === 0) return;
-    const shown = (value: unknown) => (value === undefined ? "nothing" : JSON.stringify(value));
+    const shown = (value: unknown) => (value === undefined ? "not given" : JSON.stringify(value));
     const list = differing.map((name) => `${name} is ${shown(now[name])}, was ${shown(before[name])}`).join("; ");
     throw new UsageError(`--jsonl ${this.path}: the record was made with other settings: ${list}. ${wayOut}`);
   }

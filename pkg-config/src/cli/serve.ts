@@ -2,15 +2,18 @@
 import { availableParallelism } from "node:os";
 import { createInterface } from "node:readline";
 import { autoWorkers } from "../aligner/aligner-options.js";
-import { readCaseFolder, readMeshFile } from "../case-folder.js";
+import { type ReadCaseOptions, readCaseFolder, readMeshFile } from "../case-folder.js";
+import { frameNames, openFrames } from "../frames-folder.js";
 import { type Aligner, type AlignInput, createAligner } from "../index.js";
 import { inputProperties } from "../input/resolve.js";
 import { read } from "../read-files.js";
-import { invalidArgument } from "../values/error.js";
+import { failure, invalidArgument } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { checkNames, withoutUndefined } from "../values/validation.js";
+import { onlyView } from "./align.js";
 import { failureEntry } from "./entry.js";
 import type { Flags } from "./flags.js";
+import { caseKind, sceneKind, videoKind } from "./folders.js";
 
 /** Types of the numbers of inline arrays. */
 const arrays = {
@@ -85,9 +88,9 @@ async function inputOf(request: Record<string, unknown>): Promise<AlignInput> {
   if (folder != null) {
     const others = parts.filter((name) => name in own).join(", ");
     const remedy = "Pass a case, or its files one by one.";
-    if (others !== "") throw invalidArgument("request.case", `a case beside ${others}`, "one of them", remedy);
+    if (others !== "") throw refusedCase(`a case beside ${others}`, "one of them", remedy);
     if (typeof folder !== "string") throw invalidArgument("request.case", folder, "the path of a folder", remedy);
-    return (await readCaseFolder(folder, own)).input;
+    return inputIn(folder, own);
   }
   // Both together are refused as the input of align() is.
   const isFile = typeof own.camera === "string" && own.cameraFile === undefined;
@@ -97,6 +100,23 @@ async function inputOf(request: Record<string, unknown>): Promise<AlignInput> {
   const values = await Promise.all(names.map((name) => partOfRequest(name, files[name as keyof typeof files])));
   const filled = Object.fromEntries(names.map((name, k) => [name, values[k]]));
   return withoutUndefined({ ...files, ...filled, mesh: await meshOf(mesh) }) as unknown as AlignInput;
+}
+
+const refusedCase = (found: string, expected: string, remedy: string) =>
+  failure("INVALID_ARGUMENT", "request.case", found, expected, remedy);
+
+/** The input in a folder, which `align` would read alike. Scenes and frames have results of other calls. */
+async function inputIn(folder: string, settings: ReadCaseOptions): Promise<AlignInput> {
+  if (!caseKind.is(folder) && sceneKind.is(folder)) {
+    const remedy = `Pass it to "sim3align ${sceneKind.command}", or its files one by one, with the mask and the mesh of an object.`;
+    throw refusedCase(`a scene at ${folder}`, "a case of one object", remedy);
+  }
+  const { length } = await frameNames(folder);
+  if (length === 0) return (await readCaseFolder(folder, settings)).input;
+  const view = await onlyView(folder, await openFrames(folder, settings));
+  if (view !== undefined) return view.input;
+  const remedy = `Pass it to "sim3align ${caseKind.command}", or as a video to "sim3align ${videoKind.command}".`;
+  throw refusedCase(`${length} frames at ${folder}`, "one frame with a mask", remedy);
 }
 
 /** A file by its path, an inline array `{ base64, dtype, shape }`, or the bytes of a file, `{ base64 }`. */

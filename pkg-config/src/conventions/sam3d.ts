@@ -49,8 +49,7 @@ const zUp = (vertices: Sam3dVertices) => zUpFrom[oneOf("options.vertices", verti
 export function fromSam3d(layout: Sam3dLayout, options: { vertices?: Sam3dVertices } = {}): Sim3 {
   const { vertices = "glb" } = optionsOf(options, ["vertices"]);
   const { scale, rotation, translation } = record("layout", layout, "{ scale, rotation, translation }");
-  const numbers = finiteNumbers("layout.rotation", rotation, 4, "a quaternion: four finite numbers, w first");
-  const [w, x, y, z] = numbers as Quaternion;
+  const [w, x, y, z] = quaternionIn(rotation);
   const camera = turnTo("frame", "pytorch3d");
   const fromZUp = transposed(rotationFromQuaternion("layout.rotation", [x, y, z, w]));
   return sim3Of({
@@ -59,6 +58,16 @@ export function fromSam3d(layout: Sam3dLayout, options: { vertices?: Sam3dVertic
     // The rotation between the two camera frames is its own inverse.
     translation: turned(camera, vector3("layout.translation", translation)),
   });
+}
+
+function quaternionIn(rotation: unknown): Quaternion {
+  const argument = "layout.rotation";
+  const expected = "a quaternion: four finite numbers, w first";
+  if (flattened(rotation)?.length !== 9) return finiteNumbers(argument, rotation, 4, expected) as Quaternion;
+  // Whoever has a matrix has mostly a pose of another program.
+  const remedy =
+    "SAM 3D Objects writes the quaternion w, x, y, z. A pose in OpenCV's frame belongs in initial.json, without --sam3d.";
+  throw failure("WRONG_LENGTH", argument, "9 numbers", expected, remedy);
 }
 
 function uniformScale(value: unknown): number {

@@ -139,7 +139,7 @@ function notLoaded(name: string, cause: unknown): Sim3AlignError {
   const isMoved = cause instanceof Error && "code" in cause && ["ENOENT", "ERR_INVALID_URL"].includes(`${cause.code}`);
   const remedy = isMoved
     ? `If a bundler has moved this script, import from "sim3align/inline", which needs no other file, or exclude sim3align from the bundle; or pass createAligner the URL, bytes or module of ${file}.`
-    : `Serve sim3align/wasm/${file} next to the script, or pass createAligner its URL, bytes or module; for bundlers that leave it out, such as esbuild, import from "sim3align/inline".`;
+    : `Serve sim3align/wasm/${file} next to the script, or pass createAligner its URL, bytes or module; with esbuild, import from "sim3align/inline"; with Vite before 8, set optimizeDeps.exclude.`;
   const found = cause instanceof Error ? cause.message : String(cause);
   const expected = `the WebAssembly module ${file} of the same version`;
   return failure("NOT_INITIALISED", `wasm.${name}`, found, expected, remedy, cause);
