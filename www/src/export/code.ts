@@ -1,6 +1,6 @@
 /** The code that repeats the scene that is shown: JavaScript, and the command line. */
 
-import { imageIdIn } from "../input/reading.js";
+import { withoutIds } from "../input/reading.js";
 import { sampleUrl } from "../opening/samples.js";
 import type { CameraSource, Inputs, NamedFile, ObjectFiles } from "../state/inputs.js";
 import { defaultOptions } from "../state/options.js";
@@ -35,6 +35,12 @@ function cameraOf(camera: CameraSource | null): { numbers: string; option: strin
 
 const cameraFile = ({ camera }: Inputs) => (camera?.kind === "file" ? camera.file : null);
 
+/** The image, if the camera file tells images apart. */
+function imageIdIn(inputs: Inputs): string | null {
+  const file = cameraFile(inputs);
+  return file === null || withoutIds.has(file) ? null : inputs.imageId;
+}
+
 /** The files of a scene. */
 const filesOf = (inputs: Inputs): NamedFile[] =>
   [
@@ -46,7 +52,7 @@ const filesOf = (inputs: Inputs): NamedFile[] =>
 export function javascript(): string {
   const inputs = page.inputs.peek();
   const { depth, depthKind, depthScale, objects, photo, resizeMasks, sample } = inputs;
-  const imageId = imageIdIn(cameraFile(inputs), inputs.imageId);
+  const imageId = imageIdIn(inputs);
   const read = (file: NamedFile | null | undefined) => `await read(${JSON.stringify(file?.path ?? "")})`;
   const camera = cameraOf(inputs.camera);
   const view = [
@@ -124,7 +130,7 @@ export function commands(): string {
   const reading = [
     ...option("depth-scale", depthScale),
     ...option("depth-kind", depthKind === "metric" ? null : depthKind),
-    ...option("image-id", imageIdIn(cameraFile(inputs), inputs.imageId)),
+    ...option("image-id", imageIdIn(inputs)),
     ...option("resize-mask", resizeMasks ? "nearest" : null),
   ];
   const folder = depth?.path.slice(0, depth.path.lastIndexOf("/")) ?? "";

@@ -181,11 +181,7 @@ const messageOf = ({ message }: { message: string }) => message;
 const isSameSize = (a: ImageSize, b: ImageSize | null) => a.width === b?.width && a.height === b.height;
 
 /** Camera files to which the number in the name of a depth map says nothing. */
-const withoutIds = new WeakSet<NamedFile>();
-
-/** The image of a camera file, if the file tells images apart. */
-export const imageIdIn = (file: NamedFile | null, imageId: string | null): string | null =>
-  file === null || withoutIds.has(file) ? null : imageId;
+export const withoutIds = new WeakSet<NamedFile>();
 
 /** The camera of a source, whose intrinsics may depend on the size of the image. */
 async function cameraFrom(source: CameraSource | null, imageId: string | null): Promise<Camera> {
