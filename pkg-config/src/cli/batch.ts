@@ -1,5 +1,6 @@
 /** Runs a batch of cases and records each result. A batch can be interrupted and resumed. */
 import { availableParallelism } from "node:os";
+import { setFlagsFromString } from "node:v8";
 import { autoWorkers, MAX_WORKERS } from "../aligner/aligner-options.js";
 import { listed } from "../case-files.js";
 import type { FoundFiles } from "../case-folder.js";
@@ -17,6 +18,15 @@ import type { CaseKey, RecordHeader } from "./record.js";
 import type { EntrySink } from "./result-files.js";
 import type { RunFiles } from "./run-files.js";
 import { note, type Style } from "./terminal.js";
+
+/** Has V8 optimise WebAssembly later than by default: in a process of one case, compiling takes longer than it saves. */
+function optimiseLater(): void {
+  try {
+    setFlagsFromString("--wasm-tiering-budget=50000000");
+  } catch {
+    // Other runtimes than Node have no flags of V8.
+  }
+}
 
 /** The context in which a command works on a case. */
 export interface CaseRun {
@@ -131,6 +141,7 @@ class Batch<T extends CaseKey> {
     // Until all earlier cases are there, the files would hold less than before: they stay as they are.
     const left = flags.resume ? await this.#resume().finally(onInterruption(() => output.discard())) : job.tasks;
     const { workers = "auto" } = flags;
+    if (this.#isOnly) optimiseLater();
     // A single case is done on this thread, unless the flags ask for workers.
     const wanted = workers === "auto" ? (this.#isOnly ? 0 : autoWorkers(availableParallelism())) : workers;
     const size = Math.min(wanted, this.#isOnly ? MAX_WORKERS : left.length, MAX_WORKERS);
