@@ -15,6 +15,7 @@ export type { MogeOutput } from "./conventions/moge.js";
 export type { OrientedBoundingBox } from "./conventions/oriented-bounding-box.js";
 export type { ImagesAndCamera, PixelBox } from "./conventions/resize.js";
 export type { Nested, Sam3dLayout, Sam3dVertices } from "./conventions/sam3d.js";
+export type { SceneCamera } from "./conventions/scene-frame.js";
 export type { SceneGlbObject, SceneGlbOptions, TimedPose } from "./conventions/scene-glb.js";
 export type { StretchLike } from "./conventions/stretch.js";
 export type { MaskChoice, TensorLike } from "./conventions/tensor.js";
@@ -47,9 +48,11 @@ export type {
   WorldFrame,
   WorldUncertainty,
 } from "./generated/types.js";
+export type { ThreeMesh } from "./three/mesh-input.js";
+export type { Range } from "./three/types.js";
 export type { Direction, SymmetryAxis } from "./types/argument-types.js";
 export type { ColorSamples } from "./types/files.js";
-export type { FieldOfViewCamera, MatrixCamera, UnknownCamera } from "./types/inputs.js";
+export type { DepthNumbers, FieldOfViewCamera, MatrixCamera, UnknownCamera } from "./types/inputs.js";
 export type { OptionsOf } from "./types/options.js";
 export type { BlobLike, NodeWorkerLike, SignalLike, UrlLike, WebWorkerLike, WorkerEvent } from "./types/platform.js";
 export type { LabelMap, SceneMetrics } from "./types/scene.js";

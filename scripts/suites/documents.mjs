@@ -104,7 +104,7 @@ export function checkCodes() {
     ["###", errors],
     ["####", all(warnings, /"([A-Z_]+)"/g)],
   ])) {
-    const titles = all(guide, new RegExp(`^${level} \`([A-Z_0-9]+)\`$`, "gm"));
+    const titles = all(guide, new RegExp(`^${level} ([A-Z_0-9]+)$`, "gm"));
     const other = [
       ...codes.filter((code) => !titles.includes(code)),
       ...titles.filter((code) => !codes.includes(code)),
