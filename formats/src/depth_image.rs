@@ -63,6 +63,15 @@ impl DepthUnit {
 /// Writes the values from an index on, row-major, over those of a slice.
 pub(crate) type Fill<'a> = &'a dyn Fn(usize, &mut [f64]);
 
+/// Calls `visit` with the values of each row of an image of this width and height.
+pub(crate) fn each_row([width, height]: [usize; 2], fill: Fill<'_>, visit: &mut dyn FnMut(&[f64])) {
+    let mut row = vec![0.0; width];
+    for v in 0..height {
+        fill(v * width, &mut row);
+        visit(&row);
+    }
+}
+
 /// The numbers of a depth file, as its reader passes them on.
 pub(crate) struct Stored {
     pub width: usize,
@@ -90,12 +99,8 @@ impl Stored {
     pub fn read_rows(&self, options: &DepthReadOptions, kind: DepthKind, fill: Fill<'_>) -> Result<DepthImage> {
         let (scale, unit) = self.unit(options, kind)?;
         let (width, height) = (self.width, self.height);
-        let mut row = vec![0.0; width];
         let mut values = Vec::with_capacity(width * height);
-        for v in 0..height {
-            fill(v * width, &mut row);
-            values.extend(row.iter().map(|value| (value * scale) as f32));
-        }
+        each_row([width, height], fill, &mut |row| values.extend(row.iter().map(|value| (value * scale) as f32)));
         let values = match kind {
             DepthKind::Metric | DepthKind::ScaleInvariant => DepthMap::from_metres(width, height, values)?,
             DepthKind::AffineInvariant | DepthKind::AffineInvariantDisparity => {

@@ -1,6 +1,6 @@
 //! Mask files.
 
-use crate::depth_image::Fill;
+use crate::depth_image::{Fill, each_row};
 use crate::guard::{MAX_PIXELS, beginning, unsupported};
 use crate::jpeg;
 use crate::npy::{self, Kind, NpyImage};
@@ -115,12 +115,11 @@ fn outlined(
     height: usize,
     &Values { fill, keys, is_float, is_cut_out }: &Values<'_>,
 ) -> Result<MaskImage> {
-    let mut row = vec![0.0; width];
+    let size = [width, height];
     let (mut first, mut low, mut high, mut is_binary) = (None, 0.0_f64, 0.0_f64, true);
     let mut last = 0.0;
-    for v in 0..height {
-        fill(v * width, &mut row);
-        for &value in &row {
+    each_row(size, fill, &mut |row| {
+        for &value in row {
             // Most values are those of the pixels before.
             if value == last || value == 0.0 || value.is_nan() {
                 continue;
@@ -129,7 +128,7 @@ fn outlined(
             (low, high, is_binary) =
                 (low.min(value), high.max(value), is_binary && value == *first.get_or_insert(value));
         }
-    }
+    });
     // −1 may be true; −6 is no object.
     is_binary &= !is_float || low >= 0.0;
     let first = first.unwrap_or(1.0);
@@ -157,10 +156,7 @@ fn outlined(
     };
     let is_object = |value: f64| if is_binary && kind.is_empty() { value == lowest } else { value >= lowest };
     let mut object = Vec::with_capacity(width * height);
-    for v in 0..height {
-        fill(v * width, &mut row);
-        object.extend(row.iter().map(|&value| u8::from(is_object(value))));
-    }
+    each_row(size, fill, &mut |row| object.extend(row.iter().map(|&value| u8::from(is_object(value)))));
     Ok(MaskImage { object: Image::new("mask", width, height, object)?, reading })
 }
 
@@ -172,10 +168,8 @@ const FEW: usize = 8;
 /// are between their neighbours.
 #[inline(never)]
 fn has_labels(width: usize, height: usize, fill: Fill<'_>) -> bool {
-    let mut row = vec![0.0; width];
     let (mut labels, mut high, mut is_few) = ([0.0; FEW], 0.0_f64, true);
-    for v in 0..height {
-        fill(v * width, &mut row);
+    each_row([width, height], fill, &mut |row| {
         for &level in row.iter().filter(|level| **level > 0.0) {
             high = high.max(level);
             match labels.iter_mut().find(|label| **label == level || **label == 0.0) {
@@ -183,14 +177,14 @@ fn has_labels(width: usize, height: usize, fill: Fill<'_>) -> bool {
                 None => is_few = false,
             }
         }
-    }
+    });
     if labels[1] == 0.0 {
         return false;
     }
     let range = if is_few { [0.0, 1.0] } else { [0.05, 0.95] }.map(|share| share * high);
     let is_between = |level: f64| level > range[0] && level < range[1];
     let [mut between, mut flat, mut rows, mut repeated, mut steps, mut ordered] = [0_usize; 6];
-    let mut above = vec![0.0; width];
+    let [mut row, mut above] = [0, 1].map(|_| vec![0.0; width]);
     fill(0, &mut row);
     for v in 1..height {
         core::mem::swap(&mut above, &mut row);

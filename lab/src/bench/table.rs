@@ -20,12 +20,11 @@ pub fn report(records: &[Record]) -> String {
     out += "|---|---|---|---|---|---|---|---|---|---|\n";
     let keys: [fn(&ResultRow) -> &str; 3] = [|_| ALL, |result| &result.tier, |result| &result.class];
     for key in keys {
-        let mut names = BTreeSet::new();
         let mut groups: BTreeMap<(&str, &str), Vec<&ResultRow>> = BTreeMap::new();
         for Record { row, result, .. } in records {
-            names.insert(key(result));
             groups.entry((row, key(result))).or_default().push(result);
         }
+        let names: BTreeSet<&str> = groups.keys().map(|(_, name)| *name).collect();
         // Tiers and classes only where there are several.
         if names.len() > 1 || names.contains(ALL) {
             for ((row, group), results) in groups {

@@ -23,15 +23,17 @@ export interface FolderKind {
   is(folder: string): boolean;
 }
 
-/** Whether names are those of the folders of FoundationPose. */
-const isColumns = (names: readonly string[]) => names.includes("mesh") && names.includes("depth");
+/** Whether a folder with these entries has the layout of FoundationPose. */
+const isFoundationPose = (names: readonly string[]) => names.includes("mesh") && names.includes("depth");
+
 const hasMesh = (folder: string) => {
   const names = namesIn(folder);
-  return names.some((name) => partOf(name) === "mesh") || isColumns(names);
+  return names.some((name) => partOf(name) === "mesh") || isFoundationPose(names);
 };
+
 const hasFrames = (folder: string) => {
   const names = namesIn(folder);
-  return isColumns(names) || names.some((name) => name.startsWith("frame_"));
+  return isFoundationPose(names) || names.some((name) => name.startsWith("frame_"));
 };
 
 export const caseKind: FolderKind = { noun: "case", mark: "a mesh", command: "align", is: hasMesh };

@@ -77,11 +77,7 @@ export function Sheet() {
           {summary(open)}
         </p>
         <button type="button" id="intake-open" class="primary" disabled={!canOpen} onClick={accept}>
-          {open.isEdit
-            ? "Apply and align"
-            : open.scenes.length > 1 && !open.isVideo
-              ? `Align all ${open.scenes.length}`
-              : "Align"}
+          {actionOf(open)}
         </button>
       </footer>
       <Marking open={open} ground={shown} />
@@ -116,6 +112,11 @@ function ForShown({ open: { forShown } }: { open: Draft }) {
       </button>
     </p>
   );
+}
+
+function actionOf({ isEdit, isVideo, scenes }: Draft): string {
+  if (isEdit) return "Apply and align";
+  return scenes.length > 1 && !isVideo ? `Align all ${scenes.length}` : "Align";
 }
 
 function summary({ reading, problems, progress: { done, total } }: Draft): string {

@@ -48,8 +48,8 @@ export const Check = ({ title, onCheck, ...box }: CheckProps) => (
 );
 
 /**
- * What a field needs to keep what is being typed, however often it is drawn meanwhile, until it is entered or left.
- * @param value - What it shows otherwise.
+ * Attributes of a field that keeps the typed text until it is entered or left, even if the field is redrawn meanwhile.
+ * @param value - What the field shows otherwise.
  */
 export function useTyped(value: string | number, onEnter: (text: string) => void) {
   const [typed, setTyped] = useState<string | null>(null);
